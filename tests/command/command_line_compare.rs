@@ -277,3 +277,26 @@ fn every_quantity_of_a_real_summary_is_watched() {
     // 8 balls of 22 quantities, 25 of the stiffness and the rest.
     assert!(watched > 8 * 22 + 25 + 50, "{watched}");
 }
+
+/// What is not there is said to be missing, and results of different kinds to be of different kinds.
+#[test]
+fn what_cannot_be_compared_is_told_why() {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "scene.toml", &read(Path::new(&scene("settling.toml"))));
+    let [still, moving] = ["still", "moving"].map(|name| text(&root.path().join(name)));
+    let numerics = "end = \"0.1 ms\"\nstep = \"2 us\"\noutput_interval = \"10 us\"";
+    let other = super::run_command::scene(numerics, "plots = []");
+    let other = write(root.path(), "moving.toml", &other);
+    done(&["statics", &path, "--out", &still]);
+    done(&["run", &other, "--out", &moving]);
+    let nowhere = [text(&root.path().join("nowhere")), text(&root.path().join("none"))];
+    let missing = |one: &str, other: &str| refused(&["compare", one, other]);
+    for (one, other) in [(&nowhere[0], &nowhere[1]), (&nowhere[0], &still), (&still, &nowhere[0])] {
+        let message = missing(one, other);
+        assert!(message.contains("nowhere does not exist; check the path"), "{message}");
+    }
+    let message = missing(&moving, &still);
+    let said =
+        format!("{moving} holds a run, {still} holds an equilibrium: results of different kinds");
+    assert!(message.starts_with(&said), "{message}");
+}

@@ -25,7 +25,7 @@ pub mod tolerance;
 pub mod unloaded;
 
 use crate::output::fields;
-use crate::output::json::JsonError;
+use crate::output::json::{self, JsonError};
 use crate::output::series::SeriesError;
 use crate::scene::keys;
 use channels::{Content, MOST_NAME_BYTES, name_columns_as};
@@ -69,6 +69,18 @@ pub enum CompareError {
     Series(#[from] SeriesError),
     #[error(transparent)]
     Tolerance(#[from] ToleranceError),
+    #[error("{} does not exist; check the path and the folder you are in", path.display())]
+    Missing { path: PathBuf },
+    #[error(
+        "{} holds {of_reference}, {} holds {of_candidate}: results of different kinds are not compared",
+        reference.display(), candidate.display()
+    )]
+    OtherKinds {
+        reference: PathBuf,
+        candidate: PathBuf,
+        of_reference: &'static str,
+        of_candidate: &'static str,
+    },
     #[error("{}: only .csv, .npy, .json files and folders are compared", path.display())]
     UnknownKind { path: PathBuf },
     #[error("{} and {} hold different kinds of results", reference.display(), candidate.display())]
@@ -194,22 +206,24 @@ pub fn compare(
     if options.default_class == Some(ToleranceClass::Ignored) {
         return Err(ToleranceError::IgnoredByDefault.into());
     }
+    for path in [reference, candidate] {
+        let found = std::fs::metadata(path);
+        if found.is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
+            return Err(CompareError::Missing { path: path.to_path_buf() });
+        }
+    }
     let mut only_in_candidate = Vec::new();
     let pairs = if reference.is_dir() && candidate.is_dir() {
         let beside = reference.join("tolerances.json");
         if options.tolerances.is_none() && beside.exists() {
             tolerances = Tolerances::read(&beside)?;
         }
+        refuse_other_kinds(reference, candidate)?;
         let named = |name: String| (reference.join(&name), candidate.join(&name), name);
         let [names, more] = common_folders(reference, candidate)?;
         only_in_candidate = more;
         names.into_iter().map(named).collect()
     } else if reference.is_dir() != candidate.is_dir() {
-        // A path that does not exist is named as such rather than as a file among folders.
-        for path in [reference, candidate] {
-            std::fs::metadata(path)
-                .map_err(|source| CompareError::Read { path: path.to_path_buf(), source })?;
-        }
         return Err(mismatch(reference, candidate));
     } else {
         let name = reference.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -258,6 +272,24 @@ pub fn compare(
         judge.finish_file();
     }
     judge.finish(reference)
+}
+
+/// Of folders of a run and of an equilibrium every channel would be missing.
+fn refuse_other_kinds(reference: &Path, candidate: &Path) -> Result<(), CompareError> {
+    let kind = |folder: &Path| {
+        let summary = json::read(&folder.join("summary.json")).ok()?;
+        let kind = summary["kind"].as_str()?;
+        let families: [(&str, &'static str); 3] =
+            [("run", "a run"), ("static", "an equilibrium"), ("modes", "natural modes")];
+        families.into_iter().find(|(word, _)| kind.contains(word)).map(|(_, said)| said)
+    };
+    match (kind(reference), kind(candidate)) {
+        (Some(of_reference), Some(of_candidate)) if of_reference != of_candidate => {
+            let (reference, candidate) = (reference.to_path_buf(), candidate.to_path_buf());
+            Err(CompareError::OtherKinds { reference, candidate, of_reference, of_candidate })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Files of the reference folder, of which the candidate has one at least, and what the candidate has besides; a table
