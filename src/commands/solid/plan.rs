@@ -28,12 +28,12 @@ pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     let model =
         SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
     lines.extend(factor_lines(scene, &prepared, &model));
+    lines.extend(scene.run.as_ref().map(|run| fields_line(run, &prepared.built.mesh)));
     if let Some(run) = &scene.run
         && let RunSteps::Explicit { method, stepping, .. } = run.steps
     {
         lines.push(step_line(&model, (method, stepping), run.output_interval, run.end));
     }
-    lines.extend(scene.run.as_ref().map(|run| fields_line(run, &prepared.built.mesh)));
     say_plan(&all_items(scene, &prepared), &lines)?;
     Ok(Outcome::Done)
 }
