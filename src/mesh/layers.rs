@@ -27,7 +27,12 @@ pub fn thinnest_wall(nodes: &[Vec3], elements: &Elements, part: f64) -> Option<W
             walls.push(found);
         }
     }
-    walls.sort_by(|a, b| a.0.elements.total_cmp(&b.0.elements));
+    // Of walls with as many elements the thinner ones; whole numbers of elements come with rounding.
+    let order = |wall: &Wall| [(1e6 * wall.elements).round(), wall.thickness];
+    walls.sort_by(|a, b| {
+        let ([many, thick], [others, other]) = (order(&a.0), order(&b.0));
+        many.total_cmp(&others).then(thick.total_cmp(&other))
+    });
     let all: f64 = walls.iter().map(|(_, area)| area).sum();
     let mut before = 0.0;
     walls
