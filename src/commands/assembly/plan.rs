@@ -150,7 +150,7 @@ pub fn of_housings(housings: &[Housing]) -> Vec<f64> {
 /// How many files of fields there will be and how large they are, where there are some on the way.
 fn fields_line(run: &RunSettings, solids: &[f64]) -> Option<String> {
     let size = fields_size(run.end, run.output_interval, run.fields_interval, solids);
-    size.interval.map(|_| note("fields", &size.to_string()))
+    size.interval.filter(|_| !solids.is_empty()).map(|_| note("fields", &size.to_string()))
 }
 
 /// Of the mass times length of a shaft (couples: its square): what is less out of balance is so by rounding.
