@@ -372,7 +372,7 @@ fn a_missing_file_is_a_difference_and_a_damaged_one_an_error() {
     fs::rename(reference.join("series.csv.away"), reference.join("series.csv")).unwrap();
     fs::rename(candidate.join("series.npy.away"), candidate.join("series.npy")).unwrap();
     let missing = reference.join("nothing.csv");
-    assert!(matches!(compare(&missing, &missing, &options), Err(CompareError::Series(_))));
+    assert!(matches!(compare(&missing, &missing, &options), Err(CompareError::Missing { .. })));
     let file = reference.join("series.csv");
     assert!(matches!(compare(&reference, &file, &options), Err(CompareError::KindMismatch { .. })));
     let summary = reference.join("summary.json");
