@@ -131,8 +131,8 @@ pub fn remove_earlier(folder: &Path) -> Result<bool, Box<dyn Error>> {
     Ok(was_complete)
 }
 
-/// Pictures of what goes by a name in the earlier results, as `series_front_loads.svg`: of the bodies and bearings that the
-/// columns beside them are of. Pictures of anything else stay, whatever they are called.
+/// Pictures of what goes by a name in the earlier results, as `series_front_loads.svg`: of the bodies, sensors and bearings
+/// that the columns beside them are of. Pictures of anything else stay, whatever they are called.
 fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
     const OF_BODIES: [&str; 4] = ["series_", "orbit_", "run_up_", "spectrum_"];
     const OF_BEARINGS: [&str; 4] = ["load_zone_", "slip_", "spin_", "polar_"];
@@ -145,7 +145,8 @@ fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
     // `front_inner_race` has the columns `front_inner_x`, `spindle_at_nose` those of `spindle_nose_y`.
     let of_body = |name: &str| {
         let column = name.strip_suffix("_race").unwrap_or(name).replace("_at_", "_");
-        has(format!("{name}_y")) || has(format!("{column}_y"))
+        let of_sensor = ["acceleration", "reflection"].map(|what| has(format!("{name}_{what}")));
+        has(format!("{name}_y")) || has(format!("{column}_y")) || of_sensor.contains(&true)
     };
     let of_balls =
         |prefix: &str| ["ball_", "cage_"].iter().any(|of| begins(format!("{prefix}{of}")));

@@ -75,23 +75,26 @@ fn foretold(assembly: &Assembly, request: &RunRequest) -> String {
                 found.steps, request.end
             )
         }
-        Ok(found) => format!(
-            "about {} steps to t = {} s, from a trial of {} of them{}, over {:.1e} s: most runs take {} to \
-             {WITHIN} times as many, the farthest off so far took {FARTHEST_OFF}",
-            to_digits(found.steps, 2),
-            request.end,
-            found.taken,
-            if found.looks > 1 {
-                format!(" at {} times of the run", found.looks)
-            } else {
-                " from the start on".into()
-            },
-            found.covered,
-            1.0 / WITHIN
-        ) + drifting(assembly)
-            + &found.doubt.map_or(String::new(), |(at, error)| {
-            format!("; WARNING: a look that began in equilibrium later on ended at t = {at:.3e} s: {error}")
-        }),
+        Ok(found) => {
+            let [least, most] = FARTHEST_OFF;
+            let looks = match found.looks {
+                2.. => format!(" at {} times of the run", found.looks),
+                _ => " from the start on".into(),
+            };
+            let doubt = found.doubt.map_or(String::new(), |(at, error)| {
+                format!("; WARNING: a look that began in equilibrium later on ended at t = {at:.3e} s: {error}")
+            });
+            format!(
+                "about {} steps to t = {} s, from a trial of {} of them{looks}, over {:.1e} s: most runs take {} to \
+                 {WITHIN} times as many, the farthest off so far took {least} and {most}{}{doubt}",
+                to_digits(found.steps, 2),
+                request.end,
+                found.taken,
+                found.covered,
+                1.0 / WITHIN,
+                drifting(assembly)
+            )
+        }
     }
 }
 
