@@ -14,8 +14,9 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// Ends of runs that are cut so that all scenes take some seconds together.
-const CUT: [(&str, &str, &str); 10] = [
+const CUT: [(&str, &str, &str); 11] = [
     ("cage_600rpm", "3.12144 s", "5 ms"),
+    ("cage_telemeter", "1.5 s", "20 ms"),
     ("impact", "60 ms", "6 ms"),
     ("bar_impact", "0.4 ms", "0.05 ms"),
     ("creep_on_rubber", "30 s", "0.2 s"),
