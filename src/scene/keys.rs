@@ -399,6 +399,16 @@ pub fn children(path: &str) -> Vec<&'static str> {
     names
 }
 
+/// Words of other programs for keys here.
+const OTHER_WORDS: [(&str, &str); 6] = [
+    ("force", "load"),
+    ("couple", "moment"),
+    ("angle", "tilt"),
+    ("rotation", "tilt"),
+    ("rpm", "speed"),
+    ("velocity", "speed"),
+];
+
 /// The key or table an unknown key of the table `path` was probably meant to be: a similar one
 /// beside it, else one of the same or nearly the same name in another table.
 pub fn nearest_key(path: &str, name: &str) -> Option<String> {
@@ -408,6 +418,10 @@ pub fn nearest_key(path: &str, name: &str) -> Option<String> {
     };
     if let Some(sibling) = nearest(name, children(path).into_iter(), 0.6) {
         return Some(dotted(sibling));
+    }
+    let other = OTHER_WORDS.iter().find(|(word, _)| word.eq_ignore_ascii_case(name));
+    if let Some((_, own)) = other.filter(|(_, own)| children(path).contains(own)) {
+        return Some(dotted(own));
     }
     let last = name.rsplit('.').next().unwrap_or(name);
     let elsewhere = nearest(last, KEYS.iter().map(Key::name), 0.8).or_else(|| {

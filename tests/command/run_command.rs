@@ -464,3 +464,36 @@ fn a_cage_that_overlaps_a_race_is_refused() {
     let pocket = ["bearing.cage.pocket_radius", "5.95"];
     refused("pocket_radius = \"6.1 mm\"", "pocket_radius = \"5.9 mm\"", &pocket);
 }
+
+/// An interval that follows from the end stays what it was at first, however often the end is put off.
+#[test]
+fn a_run_is_extended_again_and_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |end: &str| {
+        let content =
+            fs::read_to_string(crate::command_line_common::scene("settling_by_accuracy.toml"))
+                .unwrap();
+        let lines = content.lines().filter(|line| !line.starts_with("output_interval"));
+        let lines = lines.map(|line| match line.starts_with("end = ") {
+            true => format!("end = \"{end}\"\n"),
+            false => format!("{line}\n"),
+        });
+        crate::command_line_common::write(
+            folder.path(),
+            &format!("{end}.toml"),
+            &lines.collect::<String>(),
+        )
+    };
+    let out = crate::command_line_common::text(&folder.path().join("out"));
+    crate::command_line_common::done(&["run", &at("2 ms"), "--out", &out]);
+    for end in ["4 ms", "6 ms", "7 ms"] {
+        let said = crate::command_line_common::done(&["run", &at(end), "--out", &out, "--resume"]);
+        assert!(said.contains("a row every 2.0000e-6 s"), "{said}");
+    }
+    let shorter =
+        crate::command_line_common::bearing(&["run", &at("3 ms"), "--out", &out, "--resume"]);
+    assert!(
+        shorter.code == Some(2) && shorter.stderr.contains("has already come to 0.00"),
+        "{shorter:?}"
+    );
+}

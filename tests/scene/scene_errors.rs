@@ -344,6 +344,13 @@ fn cases() -> Vec<Case> {
             &["a table", "load = "],
         ),
         toml(
+            "load by another word",
+            "x = { load = \"250 N\" }",
+            "x = { force = \"250 N\" }",
+            18,
+            &["unknown key", "did you mean `inner_race.x.load`"],
+        ),
+        toml(
             "displacement of a tilt",
             "tilt = \"0.15 deg\"",
             "displacement = \"1 um\"",

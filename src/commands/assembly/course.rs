@@ -233,7 +233,9 @@ fn verdict(scene: &AssemblyScene, estimate: &InertiaEstimate, along: Option<&Alo
         }
         (true, true, true) => "",
         (false, _, false) => "; not allowed: inertia counts here",
-        (false, _, true) => "; method = \"quasi-static\" in [housing] takes it",
+        (false, _, true) => {
+            "; little enough for a course of equilibria (method = \"quasi-static\" in [housing])"
+        }
     };
     said
 }

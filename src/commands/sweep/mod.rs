@@ -145,6 +145,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     if first.is_ok_and(|first| first.run().is_some()) {
         say("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
     }
+    for key in report::idle_keys(&grid, &record.columns, &chunks) {
+        say(&format!(
+            "note: {key} changes no column: points that differ in it alone are the same\n"
+        ))?;
+    }
     for remark in report::remarks(&chunks) {
         let Remark { text, point, points } = remark;
         say(&format!("note: {text} (point {point}, {points} of {} in all)\n", grid.len()))?;

@@ -9,6 +9,7 @@ use bearing_dynamics::scene::units::{parse_number, parse_quantity};
 use bearing_dynamics::scene::{Document, SweepAxis};
 use ndarray::Array2;
 use serde_json::json;
+use std::collections::HashMap;
 use std::error::Error;
 use std::path::Path;
 
@@ -70,6 +71,40 @@ pub fn remarks(chunks: &[Chunk]) -> Vec<Remark> {
     let mut remarks = Vec::new();
     gather(&mut remarks, chunks.iter().flat_map(|chunk| chunk.remarks.iter().cloned()));
     remarks
+}
+
+/// Differences below this part of the largest number in its unit are what a search for an equilibrium leaves.
+const ALIKE: f64 = 1e-9;
+
+/// Varied keys that change nothing: points that differ in one of them alone have the same rows but for rounding.
+pub fn idle_keys(grid: &Grid, columns: &[Column], chunks: &[Chunk]) -> Vec<String> {
+    let told =
+        |column: &Column| ["iterations", "residual", "remarks"].contains(&column.name.as_str());
+    let first = 1 + grid.axes.len();
+    let results: Vec<usize> = (first..columns.len()).filter(|&i| !told(&columns[i])).collect();
+    let rows = || chunks.iter().flat_map(|chunk| &chunk.rows);
+    let mut largest: HashMap<&str, f64> = HashMap::new();
+    for row in rows() {
+        for &i in &results {
+            let most = largest.entry(columns[i].unit.as_str()).or_default();
+            *most = most.max(row[i].abs());
+        }
+    }
+    let alike = |a: &[f64], b: &[f64]| {
+        results.iter().all(|&i| (a[i] - b[i]).abs() <= ALIKE * largest[columns[i].unit.as_str()])
+    };
+    let of_point: HashMap<usize, &[f64]> = rows().map(|row| (row[0] as usize, &row[..])).collect();
+    let is_idle = |axis: usize| {
+        let stride: usize = grid.axes[axis + 1..].iter().map(SweepAxis::len).product();
+        let mut pairs = of_point.iter().filter_map(|(point, row)| {
+            let next = grid.indices(*point)[axis] + 1 < grid.axes[axis].len();
+            of_point.get(&(point + stride)).filter(|_| next).map(|other| (row, other))
+        });
+        let some = pairs.next();
+        some.is_some_and(|(a, b)| alike(a, b)) && pairs.all(|(a, b)| alike(a, b))
+    };
+    let idle = (0..grid.axes.len()).filter(|&axis| is_idle(axis));
+    idle.map(|axis| grid.axes[axis].key.clone()).collect()
 }
 
 /// The varied keys of a point with their values.

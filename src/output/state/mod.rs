@@ -105,14 +105,15 @@ pub enum StateError {
     )]
     Scene { path: PathBuf },
     #[error(
-        "the {what} beside {} are {kept} s apart, the scene now asks for {asked} s", path.display()
+        "the {what} beside {} are {} s apart, the scene now asks for {} s; write the interval that the run has, or start \
+         anew (--fresh)", path.display(), rounded(*kept), rounded(*asked)
     )]
     Interval { path: PathBuf, what: &'static str, kept: f64, asked: f64 },
     #[error("{} holds a damaged state: {what}; start anew (--fresh)", path.display())]
     Damaged { path: PathBuf, what: &'static str },
     #[error("{} has no rows that fit the state beside it; start anew (--fresh)", path.display())]
     Rows { path: PathBuf },
-    #[error("the run has already come to {} s, past its new end of {end} s", rounded(*time))]
+    #[error("the run has already come to {} s, past its new end of {end} s; write a later one, or start anew (--fresh)", rounded(*time))]
     Past { time: f64, end: f64 },
     #[error("{what} is {value}; only finite numbers are kept in a state")]
     NotFinite { what: &'static str, value: f64 },
@@ -244,9 +245,8 @@ pub fn resume<'p>(
         return Err(StateError::Scene { path });
     }
     let interval = |what, kept: Option<f64>, asked: Option<f64>, parts: f64| {
-        // Intervals that follow from the end stay what they were when the run is extended.
-        let follows = |interval: Option<f64>, end: f64| interval == Some(end / parts);
-        if kept == asked || (follows(kept, file.end) && follows(asked, request.end)) {
+        // Intervals that follow from the end stay what they were when the run is extended, once or again.
+        if kept == asked || asked == Some(request.end / parts) {
             return Ok(());
         }
         let [kept, asked] = [kept, asked].map(|interval| interval.unwrap_or(f64::INFINITY));
