@@ -4,6 +4,7 @@ use crate::commands::bushing_remarks::beside_its_race;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::excitations::excitations;
+use bearing_dynamics::scene::solid::Law;
 use bearing_dynamics::scene::{CageInRun, Scene};
 use bearing_dynamics::solver::clock::to_digits;
 
@@ -54,7 +55,65 @@ pub fn of_sizes(scene: &AssemblyScene) -> Vec<String> {
         of_bearing(&placed.scene).into_iter().map(move |said| format!("{before}{said}"))
     });
     let springs = scene.springs.iter().filter_map(|spring| beside_its_race(scene, spring));
-    bearings.chain(springs).chain(faster_than_fitted(scene)).collect()
+    let materials = strange_materials(scene);
+    bearings.chain(springs).chain(faster_than_fitted(scene)).chain(materials).collect()
+}
+
+/// Of a modulus (Pa), a density (kg/m³) and gravity (m/s²) what is neither metal, ceramic nor plastic, nor on a planet.
+const MODULI: [f64; 2] = [0.5e9, 1000e9];
+const DENSITIES: [f64; 2] = [500.0, 25_000.0];
+const STRONG_GRAVITY: f64 = 50.0;
+
+/// Of races, balls, shafts and housings, and of gravity.
+fn strange_materials(scene: &AssemblyScene) -> Vec<String> {
+    let mut found: Vec<(String, f64, f64)> = Vec::new();
+    for placed in &scene.bearings {
+        let of = placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+        let of_bearing = &placed.scene;
+        for (part, material) in [
+            ("inner race", of_bearing.inner_material),
+            ("outer race", of_bearing.outer_material),
+            ("balls", of_bearing.ball_material),
+        ] {
+            found.push((format!("the {part}{of}"), material.youngs_modulus, material.density));
+        }
+        if let Some(housing) = &placed.housing
+            && let Law::LinearElastic { youngs_modulus, .. } = housing.solid.law
+        {
+            found.push((format!("the housing{of}"), youngs_modulus, housing.solid.density));
+        }
+    }
+    for body in &scene.bodies {
+        let segments = body.beam.iter().flat_map(|beam| &beam.beam.segments);
+        found.extend(segments.map(|segment| {
+            (format!("body.{}", body.name), segment.youngs_modulus, segment.density)
+        }));
+    }
+    let outside = |value: f64, range: [f64; 2]| !(range[0]..=range[1]).contains(&value);
+    let mut said = Vec::new();
+    for (what, modulus, density) in found {
+        if outside(modulus, MODULI) {
+            said.push(format!(
+                "{what}: a modulus of {} GPa, where plastics have 1 to 5, metals and ceramics 40 to 700: check the unit",
+                to_digits(1e-9 * modulus, 3)
+            ));
+        }
+        if outside(density, DENSITIES) {
+            said.push(format!(
+                "{what}: a density of {} kg/m^3, where plastics have about 1000, metals and ceramics 1700 to 20 000: check the unit",
+                to_digits(density, 3)
+            ));
+        }
+    }
+    let gravity = scene.common().gravity.iter().map(|part| part * part).sum::<f64>().sqrt();
+    if gravity > STRONG_GRAVITY {
+        said.push(format!(
+            "gravity is {} m/s^2, 9.81 on earth: check the unit",
+            to_digits(gravity, 3)
+        ));
+    }
+    said.dedup();
+    said
 }
 
 /// What drives the scene faster than the springs of a bushing were fitted for.

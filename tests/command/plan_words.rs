@@ -187,6 +187,15 @@ fn sizes_that_are_hardly_meant_are_told() {
         ),
         (cage, vec![(mass, "mass = \"69 kg\"")], "mm long around balls of 11.91 mm"),
         (cage, vec![(mass, "mass = \"0.069 g\"")], "mm long around balls of 11.91 mm"),
+        (cage, vec![("-9.80665 m/s^2", "-9.81 g")], "gravity is 96.2 m/s^2"),
+        (
+            cage,
+            vec![(
+                "[bearing.ball]\nradius = \"5.953 mm\"\nmaterial = { youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7850",
+                "[bearing.ball]\nradius = \"5.953 mm\"\nmaterial = { youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7.85",
+            )],
+            "the balls: a density of 7.85 kg/m^3",
+        ),
         (
             bushing,
             vec![("inner_diameter = \"71 mm\"", "inner_diameter = \"70.9 mm\"")],
