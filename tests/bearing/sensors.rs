@@ -3,10 +3,17 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
+use bearing_dynamics::ch5_cage::telemeter::Telemeter;
+use bearing_dynamics::solver::dynamics::contacts::Driver;
 use bearing_dynamics::solver::dynamics::race::RaceNow;
 use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::sensor::{Accelerometer, Sensor, SensorKind};
-use bearing_dynamics::solver::dynamics::state::BodyState;
+use bearing_dynamics::solver::dynamics::sensor::{
+    Accelerometer, CageTelemeter, Sensor, SensorKind,
+};
+use bearing_dynamics::solver::dynamics::start;
+use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout};
+use bearing_dynamics::solver::dynamics::system::System;
 use common::table_4_1;
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -89,4 +96,40 @@ fn what_a_sensor_reads_is_how_the_run_goes_on() {
         let error = (felt[body] - mean).norm();
         assert!(error <= 1e-4 * mean.norm(), "body {body}: {} for {mean}", felt[body]);
     }
+}
+
+#[test]
+fn a_telemeter_reads_where_the_cage_is_from_its_outer_race() {
+    let mut problem = bearing(table_4_1(5e-6), [0.0; 5], 0.0);
+    problem.outer = Some(free_race());
+    problem.cage = Some(cage(&problem.geometry, Pocket::Cylindrical, Guidance::OuterRace));
+    let layout = Layout::new(8, true);
+    let mut state = start::nominal(&problem.assembly());
+    let mut put = |at: usize, position: [f64; 3], turned: [f64; 3]| {
+        let mut body = BodyState::from_slice(&state[at..]);
+        body.position = position;
+        body.orientation = UnitQuaternion::from_scaled_axis(Vector3::from(turned));
+        state[at..at + BODY].copy_from_slice(&body.to_array());
+    };
+    // A quarter turn takes a runout along Y to Z.
+    put(layout.outer(), [2e-4, -1e-4, 3e-4], [0.0; 3]);
+    put(layout.cage(), [-1e-4, 2e-4, 1e-4], [std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
+    let circuit = Telemeter {
+        radius: 0.03,
+        transceiver_radius: 0.031,
+        wire_radius: 2e-4,
+        capacitance: 1e-10,
+        resistance: [0.3; 2],
+        frequency: 33e6,
+    };
+    let (distance, offset, runout) = (4e-3, [1e-3, -5e-4], [7e-4, 0.0]);
+    let of = CageTelemeter { bearing: 0, circuit, distance, offset, runout };
+    let sensor = Sensor { name: "t".into(), kind: SensorKind::Telemeter(of) };
+    let mut system = System::new(&problem, Driver::Lanes);
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, &state, &mut rates);
+    let read = sensor.read(&system, &rates);
+    let centre = [-3e-4 - 4e-3, 3e-4 - 1e-3, -2e-4 + 7e-4 + 5e-4];
+    let expected = circuit.signal(centre, [1.0, 0.0, 0.0]);
+    assert!((read - expected).abs() <= 1e-12, "{read} {expected}");
 }

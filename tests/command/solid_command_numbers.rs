@@ -383,9 +383,9 @@ fn meshes_that_lock_are_told_and_fine_ones_are_not() {
     }
     // As many elements through the width as through the height: the thinnest wall is that of the height.
     let flat =
-        bent([10, 1, 1], 2, "0.3", "-0.01 N").replace("height = \"10 mm\"", "height = \"1 mm\"");
+        bent([10, 1, 1], 2, "0.3", "-0.01 N").replace("height = \"10 mm\"", "height = \"4 mm\"");
     let found = remarks(&place, &flat);
-    let wall = "have 1 element through them (1 mm (at x ";
+    let wall = "have 1 element through them (4 mm (at x ";
     assert!(found.len() == 1 && found[0].contains(wall), "{found:?}");
     // What was silent with the old limit: 3.9 % and 2.7 % are missing.
     let cube = bent([2, 2, 2], 2, "0.3", "-10 N").replace("100 mm", "10 mm");
