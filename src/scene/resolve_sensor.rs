@@ -14,7 +14,7 @@ use crate::scene::sensors::{Direction, SceneSensor, SceneSensorKind, SensorAt};
 
 /// What only one kind of sensor has.
 const OF_AN_ACCELEROMETER: [&str; 5] = ["on", "at", "radius", "angle", "direction"];
-const OF_A_TELEMETER: [&str; 11] = [
+const OF_A_TELEMETER: [&str; 12] = [
     "bearing",
     "distance",
     "offset",
@@ -25,6 +25,7 @@ const OF_A_TELEMETER: [&str; 11] = [
     "transceiver_radius",
     "wire_radius",
     "capacitance",
+    "resistance",
     "frequency",
 ];
 
@@ -79,12 +80,8 @@ fn sensor(
         None => return Err(reader.missing("sensor.kind", "")),
     };
     let others: &[&str] = if of_telemeter { &OF_AN_ACCELEROMETER } else { &OF_A_TELEMETER };
-    let other = others.iter().map(|key| format!("sensor.{key}")).find(|key| reader.is_given(key));
-    let other = other.or_else(|| {
-        let resistance = "sensor.resistance".to_string();
-        (!of_telemeter && reader.is_given(&resistance)).then_some(resistance)
-    });
-    if let Some(other) = other {
+    let mut others = others.iter().map(|key| format!("sensor.{key}"));
+    if let Some(other) = others.find(|key| reader.is_given(key)) {
         let kind = SENSORS[usize::from(of_telemeter)];
         let reason = format!("not of kind = \"{kind}\"");
         let advice = "leave it out, or write the other kind of sensor";
