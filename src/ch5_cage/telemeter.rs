@@ -45,11 +45,11 @@ pub fn natural_frequency(radius: f64, wire_radius: f64, capacitance: f64) -> f64
     1.0 / (TAU * (self_inductance(radius, wire_radius) * capacitance).sqrt())
 }
 
-/// Resistance of a circle of copper wire whose current flows in a skin thin beside it, Ω: (R/r) ρ/δ with
-/// δ = √(ρ/(π f μ₀)).
+/// Resistance of a circle of copper wire, Ω: (R/r) ρ/δ with δ = √(ρ/(π f μ₀)) where its current flows in a skin thin beside it,
+/// 2ρR/r² of a steady current at least.
 pub fn copper_resistance(radius: f64, wire_radius: f64, frequency: f64) -> f64 {
     let skin = (COPPER / (PI * frequency * PERMEABILITY)).sqrt();
-    radius / wire_radius * COPPER / skin
+    radius / wire_radius * COPPER / skin.min(0.5 * wire_radius)
 }
 
 /// Mutual inductance, H, of a circle of radius `a` (m) about X at the origin and one of radius `b` about the unit

@@ -145,7 +145,8 @@ fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
     // `front_inner_race` has the columns `front_inner_x`, `spindle_at_nose` those of `spindle_nose_y`.
     let of_body = |name: &str| {
         let column = name.strip_suffix("_race").unwrap_or(name).replace("_at_", "_");
-        let of_sensor = ["acceleration", "reflection"].map(|what| has(format!("{name}_{what}")));
+        let sensor = name.strip_prefix("sensor_").unwrap_or_default();
+        let of_sensor = ["acceleration", "reflection"].map(|what| has(format!("{sensor}_{what}")));
         has(format!("{name}_y")) || has(format!("{column}_y")) || of_sensor.contains(&true)
     };
     let of_balls =

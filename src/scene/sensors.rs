@@ -77,15 +77,17 @@ impl SceneSensor {
                     SensorAt::Cage(of) => bearing(of).cage.as_ref().map_or(0, |cage| cage.body),
                 };
                 let (sin, cos) = libm::sincos(angle);
-                SensorKind::Accelerometer(Accelerometer {
-                    body,
-                    place: [along, radius * cos, radius * sin],
-                    direction: match direction {
-                        Direction::Radial => [0.0, cos, sin],
-                        Direction::Tangential => [0.0, -sin, cos],
-                        Direction::Axial => [1.0, 0.0, 0.0],
-                    },
-                })
+                let place = [along, radius * cos, radius * sin];
+                let direction = match direction {
+                    Direction::Radial => [0.0, cos, sin],
+                    Direction::Tangential => [0.0, -sin, cos],
+                    Direction::Axial => [1.0, 0.0, 0.0],
+                };
+                // The cage of a bearing that is put in the other way round begins half a turn about Z away.
+                let turned = matches!(at, SensorAt::Cage(of) if bearing(of).mounts[1].reversed);
+                let own = |[x, y, z]: [f64; 3]| if turned { [-x, -y, z] } else { [x, y, z] };
+                let (place, direction) = (own(place), own(direction));
+                SensorKind::Accelerometer(Accelerometer { body, place, direction })
             }
             SceneSensorKind::Telemeter { bearing, circuit, distance, offset, runout } => {
                 let [offset, runout] = [offset, runout].map(|[far, angle]| {

@@ -17,6 +17,7 @@ use bearing_dynamics::solver::dynamics::system::System;
 use common::table_4_1;
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
+use std::f64::consts::PI;
 
 /// A body that swings and turns about a direction that stays, at a time.
 fn body(t: f64) -> BodyState {
@@ -104,16 +105,6 @@ fn a_telemeter_reads_where_the_cage_is_from_its_outer_race() {
     problem.outer = Some(free_race());
     problem.cage = Some(cage(&problem.geometry, Pocket::Cylindrical, Guidance::OuterRace));
     let layout = Layout::new(8, true);
-    let mut state = start::nominal(&problem.assembly());
-    let mut put = |at: usize, position: [f64; 3], turned: [f64; 3]| {
-        let mut body = BodyState::from_slice(&state[at..]);
-        body.position = position;
-        body.orientation = UnitQuaternion::from_scaled_axis(Vector3::from(turned));
-        state[at..at + BODY].copy_from_slice(&body.to_array());
-    };
-    // A quarter turn takes a runout along Y to Z.
-    put(layout.outer(), [2e-4, -1e-4, 3e-4], [0.0; 3]);
-    put(layout.cage(), [-1e-4, 2e-4, 1e-4], [std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
     let circuit = Telemeter {
         radius: 0.03,
         transceiver_radius: 0.031,
@@ -125,11 +116,30 @@ fn a_telemeter_reads_where_the_cage_is_from_its_outer_race() {
     let (distance, offset, runout) = (4e-3, [1e-3, -5e-4], [7e-4, 0.0]);
     let of = CageTelemeter { bearing: 0, circuit, distance, offset, runout };
     let sensor = Sensor { name: "t".into(), kind: SensorKind::Telemeter(of) };
-    let mut system = System::new(&problem, Driver::Lanes);
-    let mut rates = vec![0.0; state.len()];
-    system.evaluate(0.0, &state, &mut rates);
-    let read = sensor.read(&system, &rates);
-    let centre = [-3e-4 - 4e-3, 3e-4 - 1e-3, -2e-4 + 7e-4 + 5e-4];
-    let expected = circuit.signal(centre, [1.0, 0.0, 0.0]);
-    assert!((read - expected).abs() <= 1e-12, "{read} {expected}");
+    // Put in the other way round the transceiver is on the other side, and the cage begins half a turn about Z away.
+    for reversed in [false, true] {
+        let mut assembly = problem.assembly();
+        assembly.bearings[0].mounts.iter_mut().for_each(|mount| mount.reversed = reversed);
+        let mut state = start::nominal(&problem.assembly());
+        let mut put = |at: usize, position: [f64; 3], orientation: UnitQuaternion<f64>| {
+            let mut body = BodyState::from_slice(&state[at..]);
+            (body.position, body.orientation) = (position, orientation);
+            state[at..at + BODY].copy_from_slice(&body.to_array());
+        };
+        let about = |axis: [f64; 3], angle: f64| {
+            UnitQuaternion::from_scaled_axis(angle * Vector3::from(axis))
+        };
+        let round = about([0.0, 0.0, 1.0], if reversed { PI } else { 0.0 });
+        put(layout.outer(), [2e-4, -1e-4, 3e-4], UnitQuaternion::identity());
+        // A quarter turn takes a runout along Y to Z.
+        put(layout.cage(), [-1e-4, 2e-4, 1e-4], about([1.0, 0.0, 0.0], 0.5 * PI) * round);
+        let mut system = System::new(assembly, Driver::Lanes);
+        let mut rates = vec![0.0; state.len()];
+        system.evaluate(0.0, &state, &mut rates);
+        let read = sensor.read(&system, &rates);
+        let along = if reversed { 3e-4 } else { -3e-4 };
+        let centre = [along - 4e-3, 3e-4 - 1e-3, -2e-4 + 7e-4 + 5e-4];
+        let expected = circuit.signal(centre, [1.0, 0.0, 0.0]);
+        assert!((read - expected).abs() <= 1e-12, "{reversed}: {read} {expected}");
+    }
 }

@@ -42,9 +42,12 @@ fn sensors_have_columns_spectra_and_pictures() {
         assert!(columns.contains(column), "{columns}");
     }
     let written = files(&out);
-    for file in
-        ["series_telemeter.svg", "series_top.svg", "spectrum_telemeter.svg", "spectrum_top.svg"]
-    {
+    for file in [
+        "series_sensor_telemeter.svg",
+        "series_sensor_top.svg",
+        "spectrum_sensor_telemeter.svg",
+        "spectrum_sensor_top.svg",
+    ] {
         assert!(written.iter().any(|other| other == file), "{written:?}");
     }
     let summary = json(&out.join("summary.json"));

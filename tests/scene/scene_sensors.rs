@@ -57,6 +57,22 @@ fn a_telemeter_fills_what_it_is_not_told() {
     assert_eq!(assembly.sensors[1].column(), ("top_acceleration".to_string(), "m/s^2"));
 }
 
+/// Places and directions are the scene's, whichever way round the bearing is put in.
+#[test]
+fn a_sensor_on_the_cage_of_a_reversed_bearing_counts_as_the_scene_does() {
+    let sensors = "[sensor.a]\nkind = \"accelerometer\"\non = \"cage\"\nat = \"13 mm\"\nradius = \"30 mm\"\n\
+                   direction = \"tangential\"";
+    let reversed =
+        CAGED.replace("kind = \"angular-contact\"", "kind = \"angular-contact\"\nreversed = true");
+    for (scene, turned) in [(CAGED, 1.0), (&reversed, -1.0)] {
+        let Ok(Subject::Assembly(scene)) = with(scene, sensors) else { panic!("refused") };
+        let assembly = scene.assembly().unwrap();
+        let SensorKind::Accelerometer(of) = &assembly.sensors[0].kind else { panic!() };
+        assert_eq!(of.place, [turned * 13e-3, turned * 30e-3, 0.0]);
+        assert!(of.direction[2] == 1.0 && of.direction[1] == 0.0, "{:?}", of.direction);
+    }
+}
+
 #[test]
 fn a_sensor_that_cannot_be_is_refused() {
     let on = |place: &str| format!("[sensor.a]\nkind = \"accelerometer\"\non = \"{place}\"");

@@ -18,6 +18,8 @@ use crate::oracles::hertz;
 use crate::oracles::rolling::{RollingBall, RollingContact};
 use crate::oracles::statics::{Known, OracleBearing, OracleContact};
 
+/// The cage watched by the telemeter.
+pub const CAGE_TELEMETER: &str = include_str!("../../scenes/cage_telemeter.toml");
 /// Time between two samples, s.
 pub const INTERVAL: f64 = 1e-5;
 

@@ -10,6 +10,7 @@ use bearing_dynamics::output::spectrum::{peaks, spectrum};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::sensors::SceneSensorKind;
 
+use crate::cage_bearing::CAGE_TELEMETER;
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
@@ -26,7 +27,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const SCENE: &str = include_str!("../../scenes/cage_telemeter.toml");
 /// Half way between the cage's radii of Table 5.3, m.
 const RADIUS: f64 = 31.25e-3;
 /// 5.2.1.2, m.
@@ -184,7 +184,7 @@ fn stated(context: &mut CaseContext) -> Result<(), CaseError> {
 /// A run of the scene, its end sooner: every reading against where the columns say that the cage is.
 fn rows(context: &mut CaseContext) -> Result<(), CaseError> {
     let scene = changed_scene(
-        SCENE,
+        CAGE_TELEMETER,
         &[
             ("[\"0 rpm\", \"600 rpm\"]", "[\"500 rpm\", \"600 rpm\"]"),
             ("end = \"1.5 s\"", "end = \"12 ms\""),

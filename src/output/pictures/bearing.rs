@@ -100,7 +100,7 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     for (name, column) in &table.sensors {
         let quantity = column.strip_prefix(name.as_str()).map_or("", |of| &of[1..]);
         let curves = over_time(table, &[(column, name)], 1.0);
-        let (file, heading) = (format!("series_{name}.svg"), format!("{title}: {name}"));
+        let (file, heading) = (format!("series_sensor_{name}.svg"), format!("{title}: {name}"));
         add_series(&mut drawn, file, heading, quantity, table.unit(column), curves)?;
     }
     let curves = over_time(table, &[("energy_residual", "unaccounted for")], 1.0);
@@ -217,7 +217,8 @@ fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
         let quantity = column.strip_prefix(name.as_str()).map_or("", |of| &of[1..]);
         let of = (quantity, table.unit(column));
         let curves = lines_of(name, spectrum, 1.0).into_iter().collect();
-        add_spectrum(&mut drawn, (title, name, name), &axis, of, curves)?;
+        let file = format!("sensor_{name}");
+        add_spectrum(&mut drawn, (title, name, &file), &axis, of, curves)?;
     }
     Ok(drawn)
 }

@@ -39,9 +39,9 @@ pub struct CageTelemeter {
     pub circuit: Telemeter,
     /// Between the planes of both loops while cage and outer race are in their places, m.
     pub distance: f64,
-    /// Of the transceiver's centre from the outer race's axis, along +Y and +Z, m.
+    /// Of the transceiver's centre from the outer race's axis, along the scene's +Y and +Z, m.
     pub offset: [f64; 2],
-    /// Of the loop's centre from the cage's axis, along the cage's own Y and Z, which turn with it, m.
+    /// Of the loop's centre from the cage's axis, along the scene's +Y and +Z at the start; it turns with the cage, m.
     pub runout: [f64; 2],
 }
 
@@ -85,13 +85,17 @@ impl CageTelemeter {
         let Some(cage) = &set.cage else { return f64::NAN };
         let outer = &set.races[1].motion;
         let axis = outer.axis;
+        // Races and cage of a bearing that is put in the other way round have their own axes turned by half a turn about Z;
+        // angles count in the scene's.
+        let reversed = system.assembly.bearings[self.bearing].mounts[1].reversed;
+        let facing = if reversed { -1.0 } else { 1.0 };
         // Axes of the outer race that do not turn about its own.
         let flat = sub([0.0, 1.0, 0.0], scale(axis, axis[1]));
         let side = scale(flat, 1.0 / norm(flat));
-        let up = cross(axis, side);
+        let up = scale(cross(axis, side), facing);
         let in_axes = |vector: Vec3| [dot(vector, axis), dot(vector, side), dot(vector, up)];
         let [y, z] = self.runout;
-        let own: Vec3 = (cage.state.orientation * Vector3::new(0.0, y, z)).into();
+        let own: Vec3 = (cage.state.orientation * Vector3::new(0.0, facing * y, z)).into();
         let centre = add(own, sub(cage.motion.position, outer.position));
         let [x, y, z] = in_axes(centre);
         let from_transceiver = [x - self.distance, y - self.offset[0], z - self.offset[1]];
