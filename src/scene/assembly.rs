@@ -7,7 +7,7 @@ use crate::scene::dynamics::{DynamicsError, dynamic_problem};
 use crate::scene::housing::{HousedScene, HousingMethod, HousingSettings};
 use crate::scene::key_table_assembly::OWN_RACES;
 use crate::scene::resolved::{DefaultUsed, RunSettings, Scene};
-use crate::scene::sensors::{SceneSensor, SensorAt};
+use crate::scene::sensors::SceneSensor;
 use crate::scene::solid::SolidScene;
 use crate::scene::statics::still_lists;
 use crate::solver::dynamics::assembly::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
@@ -389,19 +389,6 @@ impl AssemblyScene {
                     None => race.into(),
                 }
             }
-        }
-    }
-
-    /// What a sensor sits on, as scenes name it.
-    pub fn name_of_place(&self, at: SensorAt) -> String {
-        let of = |bearing: usize| {
-            let name = self.bearings[bearing].name.as_ref();
-            name.map_or(String::new(), |name| format!("{name}."))
-        };
-        match at {
-            SensorAt::Body(body) => self.bodies[body].name.clone(),
-            SensorAt::Race { bearing, side } => format!("{}{}", of(bearing), OWN_RACES[side]),
-            SensorAt::Cage(bearing) => format!("{}cage", of(bearing)),
         }
     }
 

@@ -1,6 +1,8 @@
 //! Sensors as scenes have them, and as the solver takes them.
 
 use crate::ch5_cage::telemeter::Telemeter;
+use crate::scene::assembly::AssemblyScene;
+use crate::scene::key_table_assembly::OWN_RACES;
 use crate::solver::dynamics::assembly::Assembly;
 use crate::solver::dynamics::sensor::{Accelerometer, CageTelemeter, Sensor, SensorKind};
 
@@ -60,6 +62,21 @@ impl Direction {
             Direction::Radial => "radial",
             Direction::Tangential => "tangential",
             Direction::Axial => "axial",
+        }
+    }
+}
+
+impl AssemblyScene {
+    /// What a sensor sits on, as scenes name it.
+    pub fn name_of_place(&self, at: SensorAt) -> String {
+        let of = |bearing: usize| {
+            let name = self.bearings[bearing].name.as_ref();
+            name.map_or(String::new(), |name| format!("{name}."))
+        };
+        match at {
+            SensorAt::Body(body) => self.bodies[body].name.clone(),
+            SensorAt::Race { bearing, side } => format!("{}{}", of(bearing), OWN_RACES[side]),
+            SensorAt::Cage(bearing) => format!("{}cage", of(bearing)),
         }
     }
 }

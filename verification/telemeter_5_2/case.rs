@@ -99,12 +99,17 @@ fn turning(offset: f64, direction: f64) -> Result<[f64; 2], CaseError> {
     Ok([peak.amplitude, peak.frequency])
 }
 
+/// |S₁₁| of loops about one axis, `distance` (m) apart, at a part of the telemeter's frequency.
+fn reflection_at(of: &Telemeter, distance: f64, part: f64) -> f64 {
+    let mutual = mutual_inductance(RADIUS, RADIUS, [-distance, 0.0, 0.0], [1.0, 0.0, 0.0]);
+    Telemeter { frequency: part * of.frequency, ..*of }.reflection(mutual)
+}
+
 /// The sentences of 5.2.1.
 fn stated(context: &mut CaseContext) -> Result<(), CaseError> {
     // Least reflection over frequency, 5 mm apart as in Fig. 5.2.
     let of = telemeter();
-    let mutual = mutual_inductance(RADIUS, RADIUS, [-5e-3, 0.0, 0.0], [1.0, 0.0, 0.0]);
-    let at = |part: f64| Telemeter { frequency: part * of.frequency, ..of }.reflection(mutual);
+    let at = |part: f64| reflection_at(&of, 5e-3, part);
     let parts: Vec<f64> = (0..4000).map(|i| 0.5 + 2.5e-4 * i as f64).collect();
     let lowest = parts.iter().copied().min_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap_or(f64::NAN);
     context.check(
@@ -161,9 +166,8 @@ fn stated(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     let points = parts.iter().step_by(4);
     let curve = |distance: f64| {
-        let mutual = mutual_inductance(RADIUS, RADIUS, [-distance, 0.0, 0.0], [1.0, 0.0, 0.0]);
-        let at = |part: f64| Telemeter { frequency: part * of.frequency, ..of }.reflection(mutual);
-        let points = points.clone().map(|part| [1e-6 * part * of.frequency, at(*part)]).collect();
+        let at = |part: &f64| [1e-6 * part * of.frequency, reflection_at(&of, distance, *part)];
+        let points = points.clone().map(at).collect();
         Curve::new(format!("{:.0} mm", 1e3 * distance), points)
     };
     let svg = xy(&XyPlot {
