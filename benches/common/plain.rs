@@ -26,6 +26,8 @@ pub struct PlainNodes {
     per_mass: Vec<f64>,
     pub displacement: Vec<Vector3<f64>>,
     rate: Vec<Vector3<f64>>,
+    /// What of a step the next rates go on by: half of the first, whole ones after it.
+    pull: f64,
     /// Of this step; [`step`](PlainNodes::step) takes it away.
     pub force: Vec<Vector3<f64>>,
 }
@@ -41,13 +43,16 @@ impl PlainNodes {
             per_mass: solid.model.mass.iter().map(|mass| 1.0 / mass).collect(),
             displacement,
             rate: rest.clone(),
+            pull: 0.5,
             force: rest,
         }
     }
 
     pub fn step(&mut self) {
+        let pull = self.pull * self.step;
+        self.pull = 1.0;
         for n in 0..self.rate.len() {
-            self.rate[n] += self.force[n] * (self.step * self.per_mass[n]);
+            self.rate[n] += self.force[n] * (pull * self.per_mass[n]);
             self.displacement[n] += self.rate[n] * self.step;
             self.force[n] = Vector3::zeros();
         }

@@ -3,10 +3,10 @@
 use super::{Changes, CommandResult, Outcome, assembly, echo_run, say, solid};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::visible::visible_line;
-use bearing_dynamics::scene::{Assumption, DefaultUsed, Subject, resolve_subject};
+use bearing_dynamics::scene::{Assumption, DefaultUsed, Document, Subject, resolve_subject};
 use serde_json::Value;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -24,8 +24,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     // What is read by programs has no notes.
     let document = if *json { changes.read_quietly(path)?.0 } else { changes.read(path)? };
     match resolve_subject(&document)? {
-        Subject::Solid(solid) => solid::check::run(path, &document, &solid, *json),
-        Subject::Assembly(scene) => assembly::check::run(path, &document, *scene, *json),
+        Subject::Solid(solid) => solid::check::run(&document, &solid, *json),
+        Subject::Assembly(scene) => assembly::check::run(&document, *scene, *json),
     }
 }
 
@@ -49,18 +49,21 @@ pub type Line<'a> = dyn FnMut(&str, String) + 'a;
 
 /// Says what was understood, a line each: title, what `lines` has of the scene, what it assumes.
 pub fn say_lines(
-    path: &Path,
+    document: &Document,
     title: &Option<String>,
     lines: impl FnOnce(&mut Line),
     assumptions: &[Assumption],
     defaults: &[DefaultUsed],
 ) -> CommandResult {
-    let mut text = format!("{}: a valid scene\n", visible_line(&path.display().to_string()));
+    let mut text = format!("{}: a valid scene\n", visible_line(document.name()));
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
     };
     if let Some(title) = title {
         line("title", title.clone());
+    }
+    for (name, _) in document.bases() {
+        line("base", name);
     }
     lines(&mut line);
     for used in defaults {

@@ -34,7 +34,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("packs").join(stem));
     let folder = claimed(&folder, Writes::Pack)?;
-    let files = mesh_files(&scene)?;
+    let mut files = mesh_files(&scene)?;
+    files.extend(document.bases().into_iter().map(|(name, text)| (name, text.as_bytes().to_vec())));
     let own: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     refuse_foreign_files(&folder, &name, &own)?;
     let read = start.elapsed().as_secs_f64();

@@ -3,7 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `scene.toml` or `scene.json` | the scene as it was given |
-//! | meshes | where the scene has them, in folders of the same names |
+//! | meshes and bases | where the scene has them, in folders of the same names |
 //! | `resolved.json` | the same with every value and its unit, every default filled in |
 //! | `summary.json`, `series.csv`, `series.npy`, `series.columns.json` | the expected results |
 //! | `tolerances.json` | how far a candidate may be from them |
@@ -56,8 +56,8 @@ pub enum PackError {
     #[error("{name:?} is no plain file name")]
     SceneName { name: String },
     #[error(
-        "solid.mesh.file: {name:?} is not in the scene's folder or below it, where it could be packed with the scene. Hint: put the mesh \
-         beside the scene and write its name alone"
+        "{name:?} cannot be packed with the scene: it is not in its folder or below it, or has the name of another file of a pack. Hint: put meshes \
+         and bases beside the scene and write their names alone"
     )]
     Elsewhere { name: String },
     #[error(

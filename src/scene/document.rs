@@ -1,6 +1,7 @@
 //! A scene as a person wrote it: every given key, checked against the key table, with its place.
 
 use crate::scene::about::About;
+use crate::scene::base::BASE;
 use crate::scene::error::{Place, Problem, SceneError};
 use crate::scene::items::Item;
 use crate::scene::keys::{self, KEYS, Key, Leads};
@@ -20,15 +21,15 @@ pub struct Assumption {
 /// The given keys of a scene. Cheap to clone and change, for sweeps.
 #[derive(Clone, Debug)]
 pub struct Document {
-    source: Arc<Source>,
+    pub(super) source: Arc<Source>,
     /// What tables without a name hold; of a [`Document::scoped`] one with what its name adds.
     pub(super) layer: Layer,
     /// Tables with a name, such as `[bearing.left]`, in the order of the file.
     pub(super) named: Vec<Named>,
     /// The name whose tables are read or laid over the others.
     pub(super) scope: Option<String>,
-    assumptions: Vec<Assumption>,
-    sweep: Vec<SweepAxis>,
+    pub(super) assumptions: Vec<Assumption>,
+    pub(super) sweep: Vec<SweepAxis>,
 }
 
 /// Given keys, tables and lists.
@@ -40,11 +41,18 @@ pub(super) struct Layer {
     pub tables: Vec<(&'static str, usize)>,
     /// Entries of lists of tables, in the order of the file.
     pub items: Vec<Item>,
+    /// Lists of tables that are given without an entry: they take away those below them.
+    pub emptied: Vec<&'static str>,
 }
 
 impl Default for Layer {
     fn default() -> Layer {
-        Layer { given: vec![None; KEYS.len()], tables: Vec::new(), items: Vec::new() }
+        Layer {
+            given: vec![None; KEYS.len()],
+            tables: Vec::new(),
+            items: Vec::new(),
+            emptied: Vec::new(),
+        }
     }
 }
 
@@ -87,21 +95,26 @@ impl Document {
     /// Reads a scene file; its name tells the format.
     pub fn read_file(path: &std::path::Path) -> Result<Document, SceneError> {
         let (source, format) = source::read(path)?;
-        Document::from_source(source, format)
+        Document::of_source(source, format, 0)
     }
 
     /// Reads a scene from text; `name` stands for the file in messages.
     pub fn read_str(text: &str, format: Format, name: &str) -> Result<Document, SceneError> {
-        let source = Source { name: name.to_string(), text: text.to_string() };
-        Document::from_source(source, format)
+        let source = Source { name: name.to_string(), text: text.to_string(), base: None };
+        Document::of_source(source, format, 0)
     }
 
     /// Reads a scene from bytes that need not be text.
     pub fn read_bytes(bytes: Vec<u8>, format: Format, name: &str) -> Result<Document, SceneError> {
-        Document::from_source(source::decode(name.to_string(), bytes)?, format)
+        Document::of_source(source::decode(name.to_string(), bytes)?, format, 0)
     }
 
-    fn from_source(source: Source, format: Format) -> Result<Document, SceneError> {
+    /// `above` scenes have this one for their base.
+    pub(super) fn of_source(
+        source: Source,
+        format: Format,
+        above: usize,
+    ) -> Result<Document, SceneError> {
         let source = source::check(source, format)?;
         let entries = tree::parse(&source, format)?;
         let mut document = Document {
@@ -114,7 +127,7 @@ impl Document {
         };
         document.fill("", entries)?;
         document.refuse_rivals()?;
-        Ok(document)
+        document.on_base(above)
     }
 
     /// Takes the entries of the table `path`.
@@ -326,6 +339,10 @@ impl Document {
     fn row<'p>(&self, path: &'p str) -> Result<Leads<'p>, SceneError> {
         let error = |problem| SceneError::new(Place::file(&self.source.name), path, problem);
         let leads = keys::find_named(path).ok_or_else(|| error(sweep::unknown_key(path)))?;
+        if leads.key.path == BASE {
+            let advice = "write it into the scene, or name the other scene";
+            return Err(error(Problem::refused("a base is read before keys are set", advice)));
+        }
         let wrong_name = leads.name.and_then(|name| self.refused_name(leads.key, name));
         match wrong_name.or_else(|| self.refused_item(path, &leads)) {
             Some(problem) => Err(error(problem)),
@@ -338,7 +355,7 @@ impl Document {
         &self.source.name
     }
 
-    /// The text that was read.
+    /// The text of the scene's own file.
     pub fn text(&self) -> &str {
         &self.source.text
     }
@@ -419,7 +436,7 @@ impl Document {
         }
     }
 
-    fn place_of_key(&self, path: &str) -> Place {
+    pub(super) fn place_of_key(&self, path: &str) -> Place {
         let own = keys::find(path).and_then(|(row, _)| self.layer.given[row].as_ref());
         let place = match own {
             Some(given) => given.offset.map(|offset| self.source.place(offset)),

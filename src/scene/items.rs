@@ -16,6 +16,13 @@ pub(super) struct Item {
     named: bool,
 }
 
+impl Item {
+    pub fn shift(&mut self, by: usize) {
+        self.offset += by;
+        self.given.iter_mut().for_each(|(_, given)| given.shift(by));
+    }
+}
+
 /// One table of a list of tables, with the document it stands in.
 #[derive(Clone, Copy)]
 pub(crate) struct ItemRef<'d> {
@@ -58,6 +65,9 @@ impl Document {
         let Value::List(tables) = &entry.node.value else {
             return Err(self.not_a_list(table, full, &entry.node));
         };
+        if tables.is_empty() {
+            self.layer.emptied.push(table.path);
+        }
         let shown = self.shown(full, true);
         for (index, node) in tables.iter().enumerate() {
             let Value::Table(entries) = &node.value else {

@@ -73,6 +73,7 @@ pub(super) const fn quantity(path: &'static str, kind: Kind, need: Need, doc: &'
 pub(super) const KEYS: &[Key] = &[
     Key::new("title", Kind::Text, Optional, "Name of the scene, shown in results."),
     Key::new("source", Kind::Text, Optional, "Where the numbers come from: table and section."),
+    Key::new("base", Kind::Text, Optional, "Another scene that this one is on, a file relative to this one: all that the base says holds, but for what is said here."),
 
     Key::new("bearing.kind", Kind::Choice(KINDS), Required, "Kind of bearing."),
     Key::new("bearing.balls", Kind::Integer { low: 3, high: 200 }, Required, "Number of balls.")

@@ -19,6 +19,7 @@
 //! ```
 pub mod about;
 pub mod assembly;
+mod base;
 pub mod bore_shape;
 pub mod bushing_problem;
 pub mod bushing_reach;

@@ -229,7 +229,8 @@ fn check_symmetry(document: &Document, held: &[Held]) -> Result<(), SceneError> 
 
 /// Keys of runs, plots and sweeps that a solid has no use for.
 fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
-    const SHARED: [&str; 8] = [
+    const SHARED: [&str; 9] = [
+        "base",
         "title",
         "source",
         "numerics.end",

@@ -178,9 +178,8 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
                 let advice = "name a Gmsh file .msh, an Abaqus or CalculiX input file .inp";
                 return Err(reader.document.refused("solid.mesh.file", reason, advice));
             }
-            let scene = Path::new(reader.document.name());
-            let folder = scene.parent().unwrap_or(Path::new(""));
-            Ok(MeshSource::File { path: folder.join(&file), name: file, unit })
+            let (path, name) = reader.document.file("solid.mesh.file", &file);
+            Ok(MeshSource::File { path, name, unit })
         }
         (None, Some(generator)) => {
             if !reader.is_given("solid.mesh.order") {

@@ -181,15 +181,18 @@ pub(super) fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'
 }
 
 impl Layer {
-    /// Its keys hold where both have one; lists are taken whole.
-    fn lay_over(&mut self, other: &Layer) {
+    /// Its keys hold where both have one; lists are taken whole, those without an entry as well.
+    pub(super) fn lay_over(&mut self, other: &Layer) {
         for (row, given) in other.given.iter().enumerate() {
             if let Some(given) = given {
                 self.put(row, &keys::KEYS[row], given.clone());
             }
         }
         self.tables.extend(&other.tables);
-        let replaced = |item: &Item| other.items.iter().any(|own| own.table == item.table);
+        let replaced = |item: &Item| {
+            other.emptied.contains(&item.table)
+                || other.items.iter().any(|own| own.table == item.table)
+        };
         self.items.retain(|item| !replaced(item));
         self.items.extend(other.items.iter().cloned());
     }

@@ -3,6 +3,7 @@
 use crate::scene::error::{Place, Problem, SceneError};
 use crate::scene::input_file::{self, InputError};
 use std::path::Path;
+use std::sync::Arc;
 
 /// How a scene is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,15 +19,25 @@ pub const LARGEST_FILE: u64 = 16 << 20;
 pub const DEEPEST_NESTING: usize = 64;
 
 /// Name and text of a scene.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Source {
     pub name: String,
     pub text: String,
+    /// What the scene is on; its offsets count on from the end of this text.
+    pub base: Option<Arc<Source>>,
 }
 
 impl Source {
+    /// Where the offsets of a base begin.
+    pub fn length(&self) -> usize {
+        self.text.len() + 1
+    }
+
     /// Line and column, counted in characters from 1, of a byte offset.
     pub fn place(&self, offset: usize) -> Place {
+        if let Some(base) = self.base.as_ref().filter(|_| offset >= self.length()) {
+            return base.place(offset - self.length());
+        }
         let mut offset = offset.min(self.text.len());
         while !self.text.is_char_boundary(offset) {
             offset -= 1;
@@ -71,13 +82,13 @@ fn format_of(path: &Path) -> Option<Format> {
 /// UTF-8 text of a file, without byte-order mark.
 pub fn decode(name: String, bytes: Vec<u8>) -> Result<Source, SceneError> {
     match String::from_utf8(bytes) {
-        Ok(text) => Ok(Source { name, text }),
+        Ok(text) => Ok(Source { name, text, base: None }),
         Err(error) => {
             let valid = error.utf8_error().valid_up_to();
             let bytes = error.into_bytes();
             let utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
             let text = String::from_utf8_lossy(&bytes[..valid]).into_owned();
-            let source = Source { name, text };
+            let source = Source { name, text, base: None };
             Err(source.error(valid, "", Problem::NotUtf8 { utf16 }))
         }
     }

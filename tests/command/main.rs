@@ -55,6 +55,7 @@ mod run_resume;
 mod run_speeds;
 mod run_step_watch;
 mod scene_remarks;
+mod scenes_on_bases;
 mod sensors;
 mod shaft_in_elements;
 mod solid_command;

@@ -6,6 +6,7 @@ mod assembly_common;
 mod fuzz_common;
 
 mod scene_assembly;
+mod scene_base;
 mod scene_bushing;
 mod scene_defaults;
 mod scene_docs;

@@ -26,14 +26,8 @@ use bearing_dynamics::scene::statics::static_problem;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::run::Stepping;
 use bearing_dynamics::solver::plan::motion::race_freedom;
-use std::path::Path;
 
-pub fn run(
-    path: &Path,
-    document: &Document,
-    mut scene: AssemblyScene,
-    json: bool,
-) -> CommandResult {
+pub fn run(document: &Document, mut scene: AssemblyScene, json: bool) -> CommandResult {
     let housings = housings::prepare(document, &scene)?;
     for placed in &scene.bearings {
         static_problem(&placed.scene)?;
@@ -63,7 +57,7 @@ pub fn run(
             None => lines(&Lists::made(scene, made))?,
         };
         let lines = |line: &mut Line| of_scene(scene, &housings, sits, line);
-        return say_lines(path, &common.title, lines, &common.assumptions, &defaults);
+        return say_lines(document, &common.title, lines, &common.assumptions, &defaults);
     }
     let mut understood = echo(&Lists::made(scene, made))?;
     if let (Some(run), None) = (scene.run(), scene.one().filter(|one| one.housing.is_some())) {

@@ -18,7 +18,6 @@ use bearing_dynamics::solver::solid::rubber::model::Moment;
 use bearing_dynamics::solver::solid::support::FreeMotions;
 use serde_json::json;
 use std::error::Error;
-use std::path::Path;
 
 /// What is looked at, of whatever the solid is made.
 struct Facts {
@@ -32,7 +31,7 @@ struct Facts {
     law: Vec<(&'static str, String)>,
 }
 
-pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> CommandResult {
+pub fn run(document: &Document, scene: &SolidScene, json: bool) -> CommandResult {
     let facts = match &scene.law {
         Law::LinearElastic { .. } => elastic(document, scene)?,
         Law::Elastomer(rubber) => of_rubber(document, scene, rubber)?,
@@ -46,7 +45,7 @@ pub fn run(path: &Path, document: &Document, scene: &SolidScene, json: bool) -> 
         return say_json(echo, output, &scene.assumptions, &scene.defaults_used);
     }
     let lines = |line: &mut Line| facts.lines(line);
-    say_lines(path, &scene.title, lines, &scene.assumptions, &scene.defaults_used)
+    say_lines(document, &scene.title, lines, &scene.assumptions, &scene.defaults_used)
 }
 
 impl Facts {

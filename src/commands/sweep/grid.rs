@@ -129,6 +129,7 @@ impl Grid {
     pub fn fingerprint(&self, document: &Document, mesh: &[u8], cold: bool) -> String {
         let mut hash = Sha256::new();
         hash.update(document.text());
+        document.bases().iter().for_each(|(_, text)| hash.update(text));
         hash.update(mesh);
         hash.update(format!("{:?} {cold} {}", self.axes, env!("CARGO_PKG_VERSION")));
         hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()

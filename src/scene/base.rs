@@ -1,0 +1,126 @@
+//! A scene on a base: what another file says, with the scene's own keys laid over it.
+//!
+//! Both are read as one text, the scene's own before that of its base, so that every error says in which file and line it is.
+
+use crate::scene::document::{Document, Given, Layer};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::keys::KEYS;
+use crate::scene::source::{self, Source};
+use crate::scene::value::Checked;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Key of the base's file.
+pub(super) const BASE: &str = "base";
+/// Bases may have bases, so many in all.
+const DEEPEST: usize = 8;
+
+impl Document {
+    /// Reads the base that the scene names, if it does, and lays the scene's own keys over it. `above` scenes are on this one.
+    pub(super) fn on_base(self, above: usize) -> Result<Document, SceneError> {
+        let Some(Checked::Text(name)) = self.value(BASE) else { return Ok(self) };
+        if above == DEEPEST {
+            let reason = format!("this is base number {}, and up to {DEEPEST} are read", above + 1);
+            return Err(self.refused(BASE, reason, "do they go round in a circle?"));
+        }
+        let path = self.folder().join(name);
+        let unread = |error: SceneError| {
+            let reason = format!("{} cannot be read: {}", path.display(), error.problem);
+            self.refused(BASE, reason, "a relative name starts at the scene's folder")
+        };
+        let (source, format) = source::read(&path).map_err(unread)?;
+        let base = Document::of_source(source, format, above + 1)?;
+        self.laid_over(base)
+    }
+
+    /// Folder of the scene's file.
+    fn folder(&self) -> &Path {
+        Path::new(self.name()).parent().unwrap_or(Path::new(""))
+    }
+
+    /// A file that the value of a key names, from the folder of the file that the value stands in, and the same from the scene's.
+    pub(crate) fn file(&self, key: &str, name: &str) -> (PathBuf, String) {
+        let from = PathBuf::from(self.place_of_key(key).file);
+        let path = from.parent().unwrap_or(Path::new("")).join(name);
+        let own = path.strip_prefix(self.folder()).unwrap_or(&path);
+        let shown = own.display().to_string();
+        (path, shown)
+    }
+
+    /// This scene over its base.
+    fn laid_over(self, mut base: Document) -> Result<Document, SceneError> {
+        base.shift(self.source.length());
+        let own = Arc::unwrap_or_clone(self.source);
+        base.source = Arc::new(Source { base: Some(base.source), ..own });
+        base.refuse_unheard(&self.layer)?;
+        base.layer.lay_over(&self.layer);
+        for named in self.named {
+            let same =
+                |of: &&mut super::document::Named| of.table == named.table && of.name == named.name;
+            match base.named.iter_mut().find(same) {
+                Some(of_base) => of_base.layer.lay_over(&named.layer),
+                None => base.named.push(named),
+            }
+        }
+        let own_names: Vec<&String> = self.assumptions.iter().map(|of| &of.name).collect();
+        base.assumptions.retain(|of| !own_names.contains(&&of.name));
+        base.assumptions.extend(self.assumptions);
+        if !self.sweep.is_empty() {
+            base.sweep = self.sweep;
+        }
+        Ok(base)
+    }
+
+    /// A key without a name that every name of the base has for itself would change nothing.
+    fn refuse_unheard(&self, own: &Layer) -> Result<(), SceneError> {
+        for (key, given) in KEYS.iter().zip(&own.given) {
+            let Some(offset) = given.as_ref().and_then(|given| given.offset) else { continue };
+            let (names, nothing) = self.out_of_reach(key.path);
+            if nothing {
+                let (table, rest) = key.path.split_once('.').unwrap_or((key.path, ""));
+                let all: Vec<String> =
+                    names.iter().map(|name| format!("[{table}.{name}]")).collect();
+                let reason = format!(
+                    "it changes nothing, since {} of the base say it themselves",
+                    all.join(", ")
+                );
+                let advice = format!("write {table}.{}.{rest}", names[0]);
+                return Err(self.error_at(offset, key.path, Problem::refused(reason, advice)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves all places by the length of the text before.
+    fn shift(&mut self, by: usize) {
+        self.layer.shift(by);
+        for named in &mut self.named {
+            named.offset += by;
+            named.layer.shift(by);
+        }
+    }
+
+    /// Files that the scene is on, its base first: names from the scene's folder, and texts.
+    pub fn bases(&self) -> Vec<(String, &str)> {
+        let sources = std::iter::successors(self.source.base.as_deref(), |of| of.base.as_deref());
+        let name = |source: &Source| {
+            let path = Path::new(&source.name);
+            path.strip_prefix(self.folder()).unwrap_or(path).display().to_string()
+        };
+        sources.map(|source| (name(source), source.text.as_str())).collect()
+    }
+}
+
+impl Layer {
+    fn shift(&mut self, by: usize) {
+        self.given.iter_mut().flatten().for_each(|given| given.shift(by));
+        self.tables.iter_mut().for_each(|(_, offset)| *offset += by);
+        self.items.iter_mut().for_each(|item| item.shift(by));
+    }
+}
+
+impl Given {
+    pub(super) fn shift(&mut self, by: usize) {
+        self.offset = self.offset.map(|offset| offset + by);
+    }
+}
