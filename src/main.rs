@@ -39,8 +39,8 @@ enum Command {
     Pack(pack::Arguments),
     /// Compare two results folders or files and name the first difference
     Compare(compare::Arguments),
-    /// Print the JSON Schema of scenes
-    Schema,
+    /// Print the JSON Schema of scenes, or their manual
+    Schema(schema::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -62,7 +62,7 @@ fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
-        Command::Schema => schema::run(),
+        Command::Schema(arguments) => schema::run(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -1,10 +1,12 @@
 //! `bearing check SCENE`.
 
+use super::check_mesh::MeshFile;
 use super::{Changes, CommandResult, Outcome, assembly, echo_run, say, solid};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Document, Subject, resolve_subject};
 use serde_json::Value;
+use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -17,15 +19,19 @@ pub struct Arguments {
     /// Print everything that was understood, in SI-based units, as JSON
     #[arg(long)]
     json: bool,
+    /// Write the mesh of the solid, or of each housing, with its sets to a new file: Gmsh .msh, Abaqus .inp or ParaView .vtu
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let Arguments { scene: path, changes, json } = arguments;
+    let Arguments { scene: path, changes, json, mesh } = arguments;
+    let mesh = mesh.as_deref().map(MeshFile::of).transpose()?;
     // What is read by programs has no notes.
     let document = if *json { changes.read_quietly(path)?.0 } else { changes.read(path)? };
     match resolve_subject(&document)? {
-        Subject::Solid(solid) => solid::check::run(&document, &solid, *json),
-        Subject::Assembly(scene) => assembly::check::run(&document, *scene, *json),
+        Subject::Solid(solid) => solid::check::run(&document, &solid, *json, mesh),
+        Subject::Assembly(scene) => assembly::check::run(&document, *scene, *json, mesh),
     }
 }
 
@@ -54,7 +60,7 @@ pub fn say_lines(
     lines: impl FnOnce(&mut Line),
     assumptions: &[Assumption],
     defaults: &[DefaultUsed],
-) -> CommandResult {
+) -> Result<(), Box<dyn Error>> {
     let mut text = format!("{}: a valid scene\n", visible_line(document.name()));
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<22} {}", visible_line(&value));
@@ -72,6 +78,5 @@ pub fn say_lines(
     for assumption in assumptions {
         line("assumption", format!("{}: {}", assumption.name, assumption.text));
     }
-    say(&text)?;
-    Ok(Outcome::Done)
+    say(&text)
 }

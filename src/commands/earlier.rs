@@ -160,7 +160,8 @@ fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
         let any = |kinds: [&str; 4], of: &dyn Fn(&str) -> bool| {
             kinds.iter().any(|kind| stem.strip_prefix(kind).is_some_and(of))
         };
-        let of_one = ["slip", "spin", "series_energy"].contains(&stem) && has("time".into());
+        let of_one =
+            ["slip", "spin", "series_energy", "series_work"].contains(&stem) && has("time".into());
         of_one || of_loads || any(OF_BODIES, &of_body) || any(OF_BEARINGS, &of_bearing)
     };
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();

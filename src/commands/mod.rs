@@ -4,6 +4,7 @@ mod asked;
 pub mod assembly;
 mod bushing_remarks;
 pub mod check;
+pub mod check_mesh;
 pub mod compare;
 pub mod earlier;
 pub mod echo;

@@ -37,11 +37,11 @@ pub fn of_shafts(scene: &AssemblyScene) -> Vec<String> {
             body.name, mesh.around, mesh.radial
         ))
     };
-    scene.bodies.iter().filter_map(said).chain(too_thick(scene)).collect()
+    scene.bodies.iter().filter_map(said).collect()
 }
 
 /// Shafts that are thicker than the groove of an inner race on them.
-fn too_thick(scene: &AssemblyScene) -> impl Iterator<Item = String> {
+pub fn too_thick(scene: &AssemblyScene) -> impl Iterator<Item = String> {
     scene.bearings.iter().filter_map(|placed| {
         let Carrier::Body { index, at } = placed.carriers[0] else { return None };
         let body = &scene.bodies[index];

@@ -3,8 +3,17 @@
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::json_schema;
+use bearing_dynamics::scene::reference::reference_markdown;
 
-pub fn run() -> CommandResult {
-    say(&pretty(&json_schema()))?;
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Print the manual of scenes (docs/scene.md), every key with its range and default
+    #[arg(long)]
+    manual: bool,
+}
+
+pub fn run(arguments: &Arguments) -> CommandResult {
+    let text = if arguments.manual { reference_markdown() } else { pretty(&json_schema()) };
+    say(&text)?;
     Ok(Outcome::Done)
 }

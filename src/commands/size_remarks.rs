@@ -1,6 +1,7 @@
 //! Sizes that are allowed and hardly meant: a key read as another one, a radius written as a diameter, a wrong unit.
 
 use crate::commands::bushing_remarks::beside_its_race;
+use crate::commands::scene_remarks::too_thick;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::excitations::excitations;
@@ -56,7 +57,12 @@ pub fn of_sizes(scene: &AssemblyScene) -> Vec<String> {
     });
     let springs = scene.springs.iter().filter_map(|spring| beside_its_race(scene, spring));
     let materials = strange_materials(scene);
-    bearings.chain(springs).chain(faster_than_fitted(scene)).chain(materials).collect()
+    bearings
+        .chain(springs)
+        .chain(faster_than_fitted(scene))
+        .chain(materials)
+        .chain(too_thick(scene))
+        .collect()
 }
 
 /// Of a modulus (Pa), a density (kg/m³) and gravity (m/s²) what is neither metal, ceramic nor plastic, nor on a planet.

@@ -111,6 +111,17 @@ impl RunTable {
         Some(self.series.column(channel)?.to_vec())
     }
 
+    /// Columns of work and heat in which anything was done.
+    pub fn works(&self) -> Vec<String> {
+        let names = self.series.columns().iter().map(|column| &column.name);
+        let of = |name: &&String| {
+            let kind = |kind| name.starts_with(kind) || name.contains(&format!("_{kind}"));
+            let done = || self.all(name).is_some_and(|all| all.iter().any(|done| *done != 0.0));
+            (kind("work_") || kind("heat_")) && done()
+        };
+        names.filter(of).cloned().collect()
+    }
+
     pub fn unit(&self, channel: &str) -> &str {
         let found = self.series.columns().iter().find(|column| column.name == channel);
         found.map_or("", |column| column.unit.as_str())

@@ -4,7 +4,7 @@
 
 use crate::scene::document::{Document, Given, Layer};
 use crate::scene::error::{Problem, SceneError};
-use crate::scene::keys::KEYS;
+use crate::scene::keys::{self, KEYS};
 use crate::scene::source::{self, Source};
 use crate::scene::value::Checked;
 use std::path::{Path, PathBuf};
@@ -12,13 +12,22 @@ use std::sync::Arc;
 
 /// Key of the base's file.
 pub(super) const BASE: &str = "base";
+/// Key of what the base says and the scene has not.
+const WITHOUT: &str = "without";
 /// Bases may have bases, so many in all.
 const DEEPEST: usize = 8;
 
 impl Document {
     /// Reads the base that the scene names, if it does, and lays the scene's own keys over it. `above` scenes are on this one.
     pub(super) fn on_base(self, above: usize) -> Result<Document, SceneError> {
-        let Some(Checked::Text(name)) = self.value(BASE) else { return Ok(self) };
+        let Some(Checked::Text(name)) = self.value(BASE) else {
+            return match self.is_given(WITHOUT) {
+                true => {
+                    Err(self.refused(WITHOUT, "there is no base", "leave it out, or name a base"))
+                }
+                false => Ok(self),
+            };
+        };
         if above == DEEPEST {
             let reason = format!("this is base number {}, and up to {DEEPEST} are read", above + 1);
             return Err(self.refused(BASE, reason, "do they go round in a circle?"));
@@ -29,7 +38,16 @@ impl Document {
             self.refused(BASE, reason, "a relative name starts at the scene's folder")
         };
         let (source, format) = source::read(&path).map_err(unread)?;
-        let base = Document::of_source(source, format, above + 1)?;
+        let mut base = Document::of_source(source, format, above + 1)?;
+        if let Some(Checked::Text(paths)) = self.value(WITHOUT) {
+            for path in paths.split(',').map(str::trim) {
+                if !base.take_away(path) {
+                    let reason = format!("{} says nothing of {path:?}", base.name());
+                    let advice = "name keys, tables or names of the base, with commas between";
+                    return Err(self.refused(WITHOUT, reason, advice));
+                }
+            }
+        }
         self.laid_over(base)
     }
 
@@ -69,6 +87,24 @@ impl Document {
             base.sweep = self.sweep;
         }
         Ok(base)
+    }
+
+    /// Takes away a key, a table with all that is in it, or all that has a name (`sensor.top`); whether there was anything.
+    fn take_away(&mut self, path: &str) -> bool {
+        let (named, assumed, swept) = (self.named.len(), self.assumptions.len(), self.sweep.len());
+        self.named.retain(|of| format!("{}.{}", of.table, of.name) != path);
+        self.assumptions.retain(|of| !is_at(&format!("assumptions.{}", of.name), path));
+        self.sweep.retain(|_| path != "sweep");
+        if (named, assumed, swept) != (self.named.len(), self.assumptions.len(), self.sweep.len()) {
+            return true;
+        }
+        match keys::without_name(path) {
+            (path, None) => self.layer.take_away(&path),
+            (path, Some(name)) => {
+                let of_name = self.named.iter_mut().filter(|of| of.name == name);
+                of_name.fold(false, |some, of| of.layer.take_away(&path) || some)
+            }
+        }
     }
 
     /// A key without a name that every name of the base has for itself would change nothing.
@@ -111,7 +147,23 @@ impl Document {
     }
 }
 
+/// Whether a key or table is this one or in it.
+fn is_at(known: &str, path: &str) -> bool {
+    known.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
 impl Layer {
+    fn take_away(&mut self, path: &str) -> bool {
+        let mut some = false;
+        for (key, given) in KEYS.iter().zip(&mut self.given) {
+            some |= is_at(key.path, path) && given.take().is_some();
+        }
+        let items = self.items.len();
+        self.items.retain(|item| !is_at(item.table, path));
+        self.tables.retain(|(table, _)| !is_at(table, path));
+        some || items != self.items.len()
+    }
+
     fn shift(&mut self, by: usize) {
         self.given.iter_mut().flatten().for_each(|given| given.shift(by));
         self.tables.iter_mut().for_each(|(_, offset)| *offset += by);

@@ -74,6 +74,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("title", Kind::Text, Optional, "Name of the scene, shown in results."),
     Key::new("source", Kind::Text, Optional, "Where the numbers come from: table and section."),
     Key::new("base", Kind::Text, Optional, "Another scene that this one is on, a file relative to this one: all that the base says holds, but for what is said here."),
+    Key::new("without", Kind::Text, Optional, "Of a scene with a base: keys, tables (`solid.mesh`) and names (`sensor.top`) of the base that are left out, with commas between."),
 
     Key::new("bearing.kind", Kind::Choice(KINDS), Required, "Kind of bearing."),
     Key::new("bearing.balls", Kind::Integer { low: 3, high: 200 }, Required, "Number of balls.")

@@ -70,6 +70,7 @@ pub mod solid_problem;
 mod source;
 pub mod statics;
 pub mod sweep;
+mod symmetry;
 mod tree;
 pub mod units;
 mod value;

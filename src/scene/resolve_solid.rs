@@ -1,6 +1,5 @@
 //! From the given keys to a solid: defaults, and what must hold between keys.
 
-use crate::mesh::generate::Part;
 use crate::mesh::{Order, Surface};
 use crate::scene::assembly::AssemblyScene;
 use crate::scene::document::Document;
@@ -16,6 +15,7 @@ use crate::scene::solid::{
     Held, LoadKind, MeshPlace, MeshRequest, MeshSource, Probe, ProbeOf, RunSteps, SetLoad,
     SetPlace, SetRequest, SolidRun, SolidScene, Subject,
 };
+use crate::scene::symmetry;
 use crate::scene::units::plain;
 use crate::scene::value::Checked;
 use crate::solver::profile::Profile;
@@ -180,8 +180,8 @@ fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
     let gravity = vector(reader, "solid.gravity");
     let velocity = if rubber { [0.0; 3] } else { vector(reader, "solid.velocity") };
     let held: Vec<Held> = document.items("solid.held").map(held).collect::<Result<_, _>>()?;
-    if matches!(&mesh.source, MeshSource::Bushing(_, cells) if cells.part == Part::Quarter) {
-        check_symmetry(document, &held)?;
+    if mesh.is_quarter() {
+        symmetry::check(document, &held)?;
     }
     let loads: Vec<SetLoad> = document.items("solid.load").map(load).collect::<Result<_, _>>()?;
     let probes: Vec<Probe> = document.items("solid.probe").map(probe).collect::<Result<_, _>>()?;
@@ -209,28 +209,11 @@ fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
     })
 }
 
-/// A quarter of a bushing stands for the whole where its planes of symmetry stay planes.
-fn check_symmetry(document: &Document, held: &[Held]) -> Result<(), SceneError> {
-    for (axis, set) in ["x_low", "y_low"].into_iter().enumerate() {
-        if held.iter().any(|of| of.set == set && of.motion[axis].is_some()) {
-            continue;
-        }
-        let axis = AXES[axis];
-        let reason = format!(
-            "a quarter stands for the whole only where its planes of symmetry are held, and set {set:?} is not held along {axis}"
-        );
-        let advice = format!(
-            "add [[solid.held]] with set = {set:?}, {axis} = true, or write part = \"whole\""
-        );
-        return Err(document.refused("solid.mesh.part", reason, advice));
-    }
-    Ok(())
-}
-
 /// Keys of runs, plots and sweeps that a solid has no use for.
 fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
-    const SHARED: [&str; 9] = [
+    const SHARED: [&str; 10] = [
         "base",
+        "without",
         "title",
         "source",
         "numerics.end",

@@ -2,7 +2,7 @@
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::mesh::generate::{
-    Bushing, BushingMesh, Cage, CageMesh, ContactBlock, Housing, HousingMesh, Ring, RingMesh,
+    Bushing, BushingMesh, Cage, CageMesh, ContactBlock, Housing, HousingMesh, Part, Ring, RingMesh,
 };
 use crate::mesh::read::LengthUnit;
 use crate::mesh::{Order, Surface};
@@ -92,6 +92,13 @@ pub struct MeshRequest {
     pub cavities: usize,
     pub largest_aspect: f64,
     pub sets: Vec<SetRequest>,
+}
+
+impl MeshRequest {
+    /// Whether forces, stiffness and energies are a quarter of those of the whole.
+    pub fn is_quarter(&self) -> bool {
+        matches!(&self.source, MeshSource::Bushing(_, cells) if cells.part == Part::Quarter)
+    }
 }
 
 /// A set by geometry.

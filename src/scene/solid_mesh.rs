@@ -1,7 +1,7 @@
 //! The mesh that a scene asks for: read or made, repaired as asked, checked, with its sets.
 
 use crate::mesh::check::{Faults, Limits, check};
-use crate::mesh::generate::{Part, Solid, bar, bushing, contact_block, ring, shaft};
+use crate::mesh::generate::{Solid, bar, bushing, contact_block, ring, shaft};
 use crate::mesh::numbering::reverse_cuthill_mckee;
 use crate::mesh::quadratic::elevate;
 use crate::mesh::quality::{Quality, quality};
@@ -192,7 +192,7 @@ fn build_around(
                      cell is high would fold: the body is a polygon there; take more cells around, or fewer through the wall"
                 ));
             }
-            if matches!(made, MeshSource::Bushing(_, cells) if cells.part == Part::Quarter) {
+            if request.is_quarter() {
                 notes.push(QUARTER.to_string());
             }
             request.place.put(&mut mesh.nodes);

@@ -283,3 +283,39 @@ fn a_run_of_rubber_that_fails_keeps_the_last_row() {
     assert!(parts.len() > 1 && parts.is_sorted() && parts[parts.len() - 1] < 1.0, "{parts:?}");
     assert!(curve.contains("reaction_x_high_x") && !still.join("series.csv").exists(), "{curve}");
 }
+
+/// What has no mirror image on the other side of a plane of symmetry is not a load of a quarter.
+#[test]
+fn a_quarter_refuses_what_its_symmetry_forbids() {
+    use super::rubber_command::RUBBER;
+    let place = Place::new();
+    let on = |words: &str| {
+        let text = match words.starts_with("[[") {
+            true => format!("{RUBBER}{words}"),
+            false => RUBBER.replacen("[solid.mesh]", &format!("[solid]\n{words}\n[solid.mesh]"), 1),
+        };
+        command("check", &place.scene("b.toml", &text), &[]).output().unwrap()
+    };
+    for (words, key) in [
+        ("gravity = [\"0 m/s^2\", \"1 m/s^2\", \"0 m/s^2\"]", "solid.gravity"),
+        ("gravity = [\"1 m/s^2\", \"0 m/s^2\", \"0 m/s^2\"]", "solid.gravity"),
+        ("[[solid.load]]\nset = \"x_high\"\ny = \"5 N\"\n", "solid.load.1.y"),
+        (
+            "[[solid.load]]\nset = \"x_high\"\nforce = [\"1 N\", \"0 N\", \"0 N\"]\n",
+            "solid.load.1.force",
+        ),
+    ] {
+        let refused = on(words);
+        let said = stderr(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(said.contains(&format!("{key}: refused: along ")), "{said}");
+    }
+    for words in [
+        "gravity = [\"0 m/s^2\", \"0 m/s^2\", \"1 m/s^2\"]",
+        "[[solid.load]]\nset = \"x_high\"\npressure = \"1 kPa\"\n",
+        "[[solid.load]]\nset = \"x_high\"\nforce = [\"0 N\", \"0 N\", \"1 N\"]\n",
+    ] {
+        let done = on(words);
+        assert_eq!(done.status.code(), Some(0), "{words}: {}", stderr(&done));
+    }
+}

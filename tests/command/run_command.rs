@@ -94,6 +94,7 @@ fn a_run_leaves_a_results_folder() {
         "series.csv",
         "series.npy",
         "series_energy.svg",
+        "series_work.svg",
         "slip.svg",
         "spectrum.csv",
         "spectrum_cage.svg",

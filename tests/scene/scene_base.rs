@@ -170,6 +170,45 @@ fn sweeps_and_meshes_of_a_base() {
     assert!(source.contains(&format!("name: \"parts/part.msh\", path: {path:?}")), "{source}");
 }
 
+/// What a scene leaves out of its base, by key, table, list, name and assumption.
+#[test]
+fn a_base_without_some_of_it() {
+    let base = shipped();
+    let left_out = changed(
+        &base,
+        &[
+            ("stations = \"the bearings sit at the rotor's ends, as Table 4.3 asks for\"\n", ""),
+            ("load = [{ at = \"0 mm\", z = \"-3000 N\" }]\n", ""),
+            ("plots = [\"series\", \"orbit\"]\n", ""),
+            ("[solid]\ndamping = \"77 1/s\"\n", ""),
+            (
+                "cells = { around = 16, radial = 1, axial = 1, growth = 1.0 }\n",
+                "cells = { around = 12, radial = 1, axial = 1 }\n",
+            ),
+        ],
+    );
+    let more =
+        format!("{base}\n[sensor.top]\nkind = \"accelerometer\"\non = \"left.outer_race\"\n");
+    let short = "base = \"base.toml\"\nwithout = \"sensor.top, assumptions.stations, body.shaft.beam.load, output,solid.damping, solid.mesh.cells\"\n\
+                 [solid.mesh.cells]\naround = 12\nradial = 1\naxial = 1\n";
+    let root = folder(&[("base.toml", &more), ("long.toml", &left_out), ("short.toml", short)]);
+    assert!(read(&root, "short.toml").unwrap() == read(&root, "long.toml").unwrap());
+    let named = changed(
+        &base,
+        &[(
+            "[solid]\n",
+            "[housing.left]\nfit = { radial = \"1 um\" }\nwidth = \"18 mm\"\n[solid]\n",
+        )],
+    );
+    let kept = changed(&named, &[("fit = { radial = \"1 um\" }\n", "")]);
+    for (path, expected) in [("housing.left.fit", &kept), ("housing.left", &base)] {
+        let short = format!("base = \"base.toml\"\nwithout = \"{path}\"\n");
+        let root =
+            folder(&[("base.toml", &named), ("long.toml", expected), ("short.toml", &short)]);
+        assert!(read(&root, "short.toml").unwrap() == read(&root, "long.toml").unwrap(), "{path}");
+    }
+}
+
 /// What all names have, one may be without.
 #[test]
 fn an_empty_list_takes_the_common_one_away() {
@@ -222,6 +261,8 @@ fn errors_name_the_file_that_is_wrong() {
         ("round_too.toml", "base = \"round.toml\"\n"),
         ("unheard.toml", "base = \"own.toml\"\n[bearing]\nclearance = { radial = \"3 um\" }\n"),
         ("empty.toml", "base = \"nothing.toml\"\n"),
+        ("without.toml", "base = \"base.toml\"\nwithout = \"traction, solid.msh\"\n"),
+        ("baseless.toml", "without = \"traction\"\n"),
         ("nothing.toml", "\n"),
     ]);
     let line = |text: &str, of: &str| 1 + text[..text.find(of).unwrap()].matches('\n').count();
@@ -239,6 +280,8 @@ fn errors_name_the_file_that_is_wrong() {
         ("unheard.toml", "unheard.toml:3:24: bearing.clearance.radial: refused: it changes nothing, since [bearing.left], [bearing.right] of the base say it \
                           themselves. Hint: write bearing.left.clearance.radial".into()),
         ("empty.toml", "nothing.toml: the file is empty".into()),
+        ("without.toml", "without.toml:2:11: without: refused: base.toml says nothing of \"solid.msh\"".into()),
+        ("baseless.toml", "baseless.toml:1:11: without: refused: there is no base".into()),
     ] {
         let said = wrong(&root, name);
         assert!(said.starts_with(&expected), "{name}: {said}");

@@ -30,8 +30,9 @@ const WATCHED: [i32; 8] = [-190, -150, -100, -50, 50, 100, 150, 190];
 const NO_CLEARANCE: &str = "clearance = { radial = \"0 um\" }";
 /// Balls that carry nothing keep their places and do not rattle.
 const CALM: [Change; 2] = [("[bearing.left]", CAGE), ("law = \"none\"\n", DAMPED)];
-/// To both sides of a peak, rpm: some four turns of the ramp.
-const ABOUT_PEAK: f64 = 300.0;
+/// Where the rotor bends as far as this part of its largest deflection is resonance: some 165 rows, which the row of the largest alone
+/// does not shift.
+const RESONANCE: f64 = 0.9;
 
 /// What a run-up did, row by row.
 struct Done {
@@ -73,22 +74,25 @@ impl Done {
         [most(&self.y, -1.0), most(&self.y, 1.0), most(&self.z, -1.0), most(&self.z, 1.0)]
     }
 
-    /// Root of the mean square of `of` between two speeds, rpm.
-    fn mean_between(&self, of: &[f64], [from, to]: [f64; 2]) -> f64 {
-        let rows = self.speed.iter().zip(of);
-        let rows = rows.filter(|(speed, _)| (from..to).contains(*speed));
-        let (count, sum) = rows.fold((0.0, 0.0), |(n, sum), (_, m)| (n + 1.0, sum + m * m));
+    /// Root of the mean square of `of` in the rows where `counts`.
+    fn mean(of: &[f64], counts: impl Iterator<Item = bool>) -> f64 {
+        let rows = of.iter().zip(counts).filter(|(_, counts)| *counts);
+        let (count, sum) = rows.fold((0.0, 0.0), |(n, sum), (x, _)| (n + 1.0, sum + x * x));
         f64::sqrt(sum / count)
+    }
+
+    fn mean_between(&self, of: &[f64], [from, to]: [f64; 2]) -> f64 {
+        Done::mean(of, self.speed.iter().map(|speed| (from..to).contains(speed)))
+    }
+
+    fn at_resonance(&self, of: &[f64]) -> f64 {
+        let least = RESONANCE * largest(self.deflection.iter().copied());
+        Done::mean(of, self.deflection.iter().map(|deflection| *deflection >= least))
     }
 
     /// Speed of the largest deflection, rpm.
     fn peak(&self) -> f64 {
         self.speed[Done::top(&self.deflection)]
-    }
-
-    /// About that speed.
-    fn at_resonance(&self, of: &[f64]) -> f64 {
-        self.mean_between(of, [self.peak() - ABOUT_PEAK, self.peak() + ABOUT_PEAK])
     }
 
     /// Row of the largest of these.

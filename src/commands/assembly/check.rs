@@ -6,6 +6,7 @@ use super::lists::Lists;
 use super::plan::of_housings;
 use super::{defaults, housings, lines};
 use crate::commands::check::{Line, say_json, say_lines};
+use crate::commands::check_mesh::{MeshFile, say_written};
 use crate::commands::echo::through;
 use crate::commands::run::{planned_request, request};
 use crate::commands::scene_remarks::{
@@ -27,7 +28,12 @@ use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
 use bearing_dynamics::solver::dynamics::run::Stepping;
 use bearing_dynamics::solver::plan::motion::race_freedom;
 
-pub fn run(document: &Document, mut scene: AssemblyScene, json: bool) -> CommandResult {
+pub fn run(
+    document: &Document,
+    mut scene: AssemblyScene,
+    json: bool,
+    mesh: Option<MeshFile>,
+) -> CommandResult {
     let housings = housings::prepare(document, &scene)?;
     for placed in &scene.bearings {
         static_problem(&placed.scene)?;
@@ -51,13 +57,16 @@ pub fn run(document: &Document, mut scene: AssemblyScene, json: bool) -> Command
     }
     let scene = &scene;
     let (common, defaults) = (scene.common(), defaults(scene));
+    let meshes: Vec<_> = housings.iter().map(|of| (of.name.as_deref(), &of.built.mesh)).collect();
+    let written = mesh.map(|file| file.write(&meshes)).transpose()?;
     if !json {
         let sits = match scene.one() {
             Some(_) => Vec::new(),
             None => lines(&Lists::made(scene, made))?,
         };
         let lines = |line: &mut Line| of_scene(scene, &housings, sits, line);
-        return say_lines(document, &common.title, lines, &common.assumptions, &defaults);
+        say_lines(document, &common.title, lines, &common.assumptions, &defaults)?;
+        return say_written(written);
     }
     let mut understood = echo(&Lists::made(scene, made))?;
     if let (Some(run), None) = (scene.run(), scene.one().filter(|one| one.housing.is_some())) {

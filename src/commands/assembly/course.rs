@@ -209,7 +209,7 @@ fn verdict(scene: &AssemblyScene, estimate: &InertiaEstimate, along: Option<&Alo
         }
         None => {
             said += &format!(
-                "; error of {} of the displacement that goes with {} ({} Hz)",
+                "; equilibria leave out inertia, {} of the displacement that goes with {} ({} Hz)",
                 percent(driven),
                 cause.what,
                 to_digits(cause.frequency, 4)
@@ -221,6 +221,11 @@ fn verdict(scene: &AssemblyScene, estimate: &InertiaEstimate, along: Option<&Alo
             (judged, driven)
         }
     };
+    let of_balls = along.is_none() && cause.is_ripple && driven > TOO_MUCH;
+    if of_balls && !chosen {
+        said += "; whether that counts shows along a course: `bearing plan` of method = \"quasi-static\" in [housing] tells it";
+        return said;
+    }
     // An error that is not a number is one.
     let (small, bearable) = (error <= WORTH_A_WORD, error <= TOO_MUCH);
     said += match (chosen, small, bearable) {

@@ -16,6 +16,7 @@ use crate::commands::remarks::of_balls_at_speed;
 use crate::commands::scene_remarks::at_rest;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
+use bearing_dynamics::output::remarks::of_narrow_contact;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
@@ -129,6 +130,10 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         }
         .into(),
     );
+    let narrow = housings.iter().zip(&moment.solution.seats);
+    remarks.extend(narrow.filter_map(|(housing, seat)| {
+        Some(format!("{}{}", housing.before(), of_narrow_contact(seat)?))
+    }));
     if !masses.is_empty() {
         let natural: Vec<String> = of_housings.iter().map(|(_, count)| count.to_string()).collect();
         let within = match first_left_out.is_finite() {

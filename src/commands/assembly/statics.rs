@@ -114,7 +114,8 @@ pub fn find_equilibrium<'s>(
     for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&moment.solution.seats) {
         let own = Settled::new(housing, bore, state);
         let model = &own.housing.setup.model;
-        let said = of_solid::of_equilibrium(model, &own.displacement, &own.stress);
+        let mut said = of_solid::of_equilibrium(model, &own.displacement, &own.stress);
+        said.extend(of_solid::of_narrow_contact(state));
         of_housings.extend(said.iter().map(|said| format!("{}{said}", own.housing.before())));
         of_housings.extend(own.housing.beyond_normals(bore, &own.displacement, state));
         own.record(bore, moment, &mut record)?;

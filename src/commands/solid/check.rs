@@ -2,6 +2,7 @@
 
 use super::{echo, mesh_notes, prepare};
 use crate::commands::check::{Line, say_json, say_lines};
+use crate::commands::check_mesh::{MeshFile, say_written};
 use crate::commands::{CommandResult, placed, rubber};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
@@ -31,11 +32,17 @@ struct Facts {
     law: Vec<(&'static str, String)>,
 }
 
-pub fn run(document: &Document, scene: &SolidScene, json: bool) -> CommandResult {
+pub fn run(
+    document: &Document,
+    scene: &SolidScene,
+    json: bool,
+    mesh: Option<MeshFile>,
+) -> CommandResult {
     let facts = match &scene.law {
         Law::LinearElastic { .. } => elastic(document, scene)?,
         Law::Elastomer(rubber) => of_rubber(document, scene, rubber)?,
     };
+    let written = mesh.map(|file| file.write(&[(None, &facts.built.mesh)])).transpose()?;
     if json {
         let mut echo = echo::scene(scene)?;
         echo["mesh"] = mesh_section(&facts.built)?;
@@ -45,7 +52,8 @@ pub fn run(document: &Document, scene: &SolidScene, json: bool) -> CommandResult
         return say_json(echo, output, &scene.assumptions, &scene.defaults_used);
     }
     let lines = |line: &mut Line| facts.lines(line);
-    say_lines(document, &scene.title, lines, &scene.assumptions, &scene.defaults_used)
+    say_lines(document, &scene.title, lines, &scene.assumptions, &scene.defaults_used)?;
+    say_written(written)
 }
 
 impl Facts {

@@ -72,7 +72,9 @@ pub fn say_remarks(remarks: &[String]) -> Result<(), Box<dyn Error>> {
 }
 
 pub fn title(scene: &SolidScene) -> String {
-    scene.title.clone().unwrap_or_else(|| "Solid".into())
+    let title = scene.title.clone().unwrap_or_else(|| "Solid".into());
+    // Its forces are read off pictures.
+    if scene.mesh.is_quarter() { format!("{title} (a quarter)") } else { title }
 }
 
 /// Scene, assumptions, defaults and plan, as every summary has them.

@@ -15,6 +15,7 @@ use crate::solver::solid::rubber::measures;
 use crate::solver::solid::rubber::model::RubberModel;
 use crate::solver::solid::stress::{element_stresses, nodal_stresses};
 use bore::{BoreNodeState, on_nodes};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -99,6 +100,35 @@ pub fn write_fields(
         Field { name: "cauchy_stress", components: 6, values: stresses.cell.as_flattened() },
     ];
     Ok(write_atomic(path, &write_vtu(mesh, &points, &cells)?)?)
+}
+
+/// The bytes of a `.vtu` with the mesh and, for each of its sets, a field that is one at its nodes or in its elements and zero elsewhere.
+///
+/// # Errors
+/// A name of a set that the format has no place for.
+pub fn mesh_with_sets(mesh: &TetMesh) -> Result<Vec<u8>, MeshError> {
+    let marked = |count: usize, members: &[u32]| {
+        let mut values = vec![0.0; count];
+        members.iter().for_each(|member| values[*member as usize] = 1.0);
+        values
+    };
+    let at_nodes = |members: &[u32]| marked(mesh.nodes.len(), members);
+    let surfaces = mesh.surface_sets.iter();
+    let mut points: BTreeMap<&str, Vec<f64>> = surfaces
+        .map(|(name, faces)| (name.as_str(), at_nodes(&mesh.nodes_of_faces(faces))))
+        .collect();
+    points.extend(mesh.node_sets.iter().map(|(name, set)| (name.as_str(), at_nodes(set))));
+    let cells: Vec<(&str, Vec<f64>)> = mesh
+        .element_sets
+        .iter()
+        .map(|(name, set)| (name.as_str(), marked(mesh.elements.len(), set)))
+        .collect();
+    let field = |(name, values)| Field { name, components: 1, values };
+    let points: Vec<Field> =
+        points.iter().map(|(name, values)| field((*name, values.as_slice()))).collect();
+    let cells: Vec<Field> =
+        cells.iter().map(|(name, values)| field((*name, values.as_slice()))).collect();
+    write_vtu(mesh, &points, &cells)
 }
 
 /// Writes the `.vtu` of a mode shape.

@@ -103,9 +103,17 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
         let (file, heading) = (format!("series_sensor_{name}.svg"), format!("{title}: {name}"));
         add_series(&mut drawn, file, heading, quantity, table.unit(column), curves)?;
     }
-    let curves = over_time(table, &[("energy_residual", "unaccounted for")], 1.0);
-    let heading = format!("{title}: energy ledger");
+    let residuals =
+        [("energy_coupled_residual", "of all parts"), ("energy_residual", "of bearings")];
+    let curves = over_time(table, &residuals, 1.0);
+    let heading = format!("{title}: energy unaccounted for");
     add_series(&mut drawn, "series_energy.svg".into(), heading, "energy", "J", curves)?;
+    let names = table.works();
+    let works: Vec<(&str, &str)> =
+        names.iter().map(|name| (name.as_str(), name.as_str())).collect();
+    let heading = format!("{title}: work and heat since the start");
+    let curves = over_time(table, &works, 1.0);
+    add_series(&mut drawn, "series_work.svg".into(), heading, "energy", "J", curves)?;
     Ok(drawn)
 }
 
