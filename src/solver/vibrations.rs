@@ -24,7 +24,8 @@ use super::statics::AssemblySolution;
 use nalgebra::{DMatrix, DVector};
 use std::convert::Infallible;
 
-/// Shapes that motions are made of: with those of two bearings and a shaft between them all that whirl below some kHz.
+/// Shapes that motions are made of, but for answers to what brakes them: with those of two bearings and a shaft between them all that
+/// whirl below some kHz.
 const MODES: usize = 36;
 
 /// What vibrates, and where its motions are told.

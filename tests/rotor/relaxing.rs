@@ -6,7 +6,7 @@ use bearing_dynamics::solver::dynamics::assembly::Assembly;
 use bearing_dynamics::solver::dynamics::connection::{Law, MaxwellElement};
 use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
 use bearing_dynamics::solver::housing::inertia::MovingBody;
-use bearing_dynamics::solver::rotor::model::{Rotor, RotorModel, Support};
+use bearing_dynamics::solver::rotor::model::{Rotor, RotorModel, Support, Vibrations};
 use bearing_dynamics::solver::rotor::relaxing::Relaxing;
 use bearing_dynamics::solver::rotor::whirl::Whirl;
 use bearing_dynamics::solver::vibrations::{natural_motions, whirling};
@@ -256,12 +256,60 @@ fn maxwell_elements_take_part_in_whirl_of_a_shaft_that_bends() {
             for (own, other) in own.iter().zip(&other).take(6) {
                 let apart = (own.eigenvalue - other.eigenvalue).norm() / other.frequency();
                 println!("{} {} {apart:e}", own.eigenvalue, other.eigenvalue);
-                // Static answers follow no pull that has a phase of its own: what our shapes leave out of all stations, most where
-                // the elements brake much; 2e-5 at 0.02 of critical damping.
-                assert!(apart <= 1e-3, "{apart:e}");
+                // What elements pull the shaft into is among the shapes of both; 2e-12 is left.
+                assert!(apart <= 1e-9, "{apart:e}");
                 assert!((own.direction - other.direction).abs() <= 1e-3);
             }
             assert!(own.len() >= 6 && other.len() >= 6);
         }
+    }
+}
+
+/// What springs that relax and dashpots pull a shaft into is among its shapes, however few natural motions are kept: rubber is 34 times as stiff
+/// at once as relaxed, so that slow motions are none of those of springs that have not relaxed.
+#[test]
+fn few_shapes_follow_what_brakes_them() {
+    let matrices = beam().matrices(&PLACES).unwrap();
+    let size = matrices.mass.nrows();
+    let (mut stiffness, mut damping) = (matrices.stiffness.clone(), matrices.mass.clone());
+
+    let mut relaxing = Vec::new();
+    for (number, at) in PLACES.into_iter().enumerate() {
+        let first =
+            4 * matrices.stations.iter().position(|place| (place - at).abs() < 1e-9).unwrap();
+        for i in 0..2 {
+            stiffness[(first + i, first + i)] += 1e6;
+            damping[(first + i, first + i)] += if number == 0 { 3e4 } else { 0.0 };
+        }
+        for (k, relaxation_time) in [(4e6, 1e-1), (9e6, 1e-2), (2e7, 1e-3)] {
+            let mut levers = DMatrix::zeros(6, size);
+            (levers[(1, first)], levers[(2, first + 1)]) = (1.0, 1.0);
+            let stiffness = [0.0, k, k, 0.0, 0.0, 0.0];
+            relaxing.push(Relaxing { levers, stiffness, relaxation_time, spin: 0.0 });
+        }
+    }
+    let all = Vibrations {
+        stiffness,
+        damping,
+        gyroscopic: matrices.gyroscopic.clone(),
+        circulating: DMatrix::zeros(size, size),
+        pairs: (0..size / 2).map(|pair| [2 * pair, 2 * pair + 1]).collect(),
+        free: (0..size).collect(),
+        relaxing,
+        mass: matrices.mass.clone(),
+    };
+    let whirls = |modes: usize| {
+        let model = RotorModel::of(&all, modes, matrices.stations.clone(), None).unwrap();
+        model.whirls(SPEED, 8).unwrap()
+    };
+    let (few, whole) = (whirls(18), whirls(size));
+    assert!(size > 60 && whole.len() == 8, "{size}");
+    for (few, whole) in few.iter().zip(&whole) {
+        let apart = (few.eigenvalue - whole.eigenvalue).norm() / whole.eigenvalue.norm();
+        println!("{} {} {apart:e}", few.eigenvalue, whole.eigenvalue);
+        // Shapes that answer forces at rest miss by a power of frequency: the slowest by 2e-11, the eighth by 1.5e-7. Without them
+        // frequencies by 8e-4 and damping by 0.9 %.
+        assert!(apart <= 1e-6, "{apart:e}");
+        assert!((few.damping_ratio() / whole.damping_ratio() - 1.0).abs() <= 1e-5);
     }
 }

@@ -78,7 +78,7 @@ impl RotorModel {
             let best = whirls
                 .into_iter()
                 .max_by(|a, b| critical.whirl.likeness(a).total_cmp(&critical.whirl.likeness(b)));
-            let best = best.ok_or(RotorError::Eigenvalues { speed, iterations: 0 })?;
+            let best = best.ok_or(RotorError::DampedCritical { near: critical.speed })?;
             Ok(best.frequency() - speed)
         };
         let mut from = (critical.speed, excess(critical.speed)?);
@@ -91,7 +91,7 @@ impl RotorModel {
             let next = to.0 - to.1 * (to.0 - from.0) / (to.1 - from.1);
             (from, to) = (to, (next, excess(next)?));
         }
-        Err(RotorError::Eigenvalues { speed: to.0, iterations: SECANTS })
+        Err(RotorError::DampedCritical { near: critical.speed })
     }
 }
 

@@ -78,8 +78,10 @@ pub enum RotorError {
     NothingMoves,
     #[error("the shaft on its supports falls over: their stiffness is negative along some motion")]
     Unstable,
-    #[error("the eigenvalues at {speed} rad/s have not been found in {iterations} iterations")]
-    Eigenvalues { speed: f64, iterations: usize },
+    #[error("the {size} eigenvalues at {speed} rad/s have not been found")]
+    Eigenvalues { speed: f64, size: usize },
+    #[error("no speed near {near} rad/s was found at which the damped motion whirls once a turn")]
+    DampedCritical { near: f64 },
     #[error(
         "{name} turns with the body where it begins and is not alike along y and z: what it does changes as the body turns, and \
          motions about the equilibrium have no frequencies. Hint: make it alike along both, or begin it at a body that does not turn"
@@ -196,7 +198,8 @@ impl RotorModel {
         // Shapes are those of springs that have not relaxed.
         let stiff =
             (!vibrations.relaxing.is_empty()).then(|| vibrations.stiffened(|_| f64::INFINITY));
-        let (basis, natural) = natural_motions(stiff.as_ref().unwrap_or(vibrations), modes)?;
+        let (basis, natural) =
+            natural_motions(stiff.as_ref().unwrap_or(vibrations), modes, &vibrations.relaxing)?;
         let Vibrations { mass, stiffness, damping, gyroscopic, circulating, pairs, .. } =
             vibrations;
         let project = |matrix: &DMatrix<f64>| basis.transpose() * matrix * &basis;
@@ -318,8 +321,13 @@ fn free_coordinates(matrices: &BeamMatrices, held: &[Held]) -> Vec<usize> {
 }
 
 /// Shapes of unit modal mass that the rotor's motions are made of, and their frequencies at rest, rad/s: the lowest natural motions,
-/// and for the lowest of these what their gyroscopic moments bend besides, which natural motions alone approach slowly.
-fn natural_motions(of: &Vibrations, modes: usize) -> Result<(DMatrix<f64>, Vec<f64>), RotorError> {
+/// and what natural motions alone approach slowly: what gyroscopic moments and dashpots of the lowest of these bend besides, and what forces of
+/// `relaxing` springs do.
+fn natural_motions(
+    of: &Vibrations,
+    modes: usize,
+    relaxing: &[Relaxing],
+) -> Result<(DMatrix<f64>, Vec<f64>), RotorError> {
     let free = &of.free;
     if free.is_empty() || modes == 0 {
         return Err(RotorError::NothingMoves);
@@ -338,10 +346,19 @@ fn natural_motions(of: &Vibrations, modes: usize) -> Result<(DMatrix<f64>, Vec<f
     if modes < count {
         let corrected = modes / 3;
         let keep = modes - corrected;
-        let loads = part(&of.gyroscopic) * shapes.columns(0, corrected);
+        let lowest_ones = shapes.columns(0, corrected);
+        let mut loads: Vec<DVector<f64>> = Vec::new();
+        for forces in [&of.gyroscopic, &of.damping] {
+            let of_motions = part(forces) * lowest_ones;
+            loads.extend(of_motions.column_iter().map(|column| column.into_owned()));
+        }
+        for row in relaxing.iter().flat_map(Relaxing::pulled) {
+            loads.push(DVector::from_iterator(count, free.iter().map(|&at| row[at])));
+        }
+        let loads = DMatrix::from_columns(&loads);
         let shifted = &stiffness + &mass * (1e-4 * lightest);
         let bent = shifted.cholesky().ok_or(RotorError::Unstable)?.solve(&loads);
-        let mut ritz = DMatrix::zeros(count, modes);
+        let mut ritz = DMatrix::zeros(count, (keep + bent.ncols()).min(count));
         ritz.columns_mut(0, keep).copy_from(&shapes.columns(0, keep));
         let mut at = keep;
         for column in bent.column_iter() {
@@ -354,8 +371,8 @@ fn natural_motions(of: &Vibrations, modes: usize) -> Result<(DMatrix<f64>, Vec<f
                 column -= ritz.columns(0, at) * taken;
             }
             let left = column.dot(&(&mass * &column)).sqrt();
-            // Two discs' moments may bend the shaft alike.
-            if left > 1e-9 * before {
+            // Two discs' moments may bend the shaft alike, damping of the mass does what inertia does, and elements of one spring pull alike.
+            if left > 1e-9 * before && at < ritz.ncols() {
                 ritz.set_column(at, &(column / left));
                 at += 1;
             }

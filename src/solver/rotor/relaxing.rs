@@ -44,6 +44,11 @@ impl Relaxing {
         (0..6).filter(|&i| self.stiffness[i] != 0.0 && self.levers.row(i).amax() > 0.0)
     }
 
+    /// L's rows of the directions in which it pulls.
+    pub(super) fn pulled(&self) -> impl Iterator<Item = Vec<f64>> + '_ {
+        self.directions().map(|i| self.levers.row(i).iter().copied().collect())
+    }
+
     /// How many states it has.
     pub(super) fn states(&self) -> usize {
         self.directions().count()

@@ -3,7 +3,7 @@
 use super::beam::STATION;
 use super::model::{RotorError, RotorModel};
 use super::relaxing::Relaxing;
-use nalgebra::linalg::Schur;
+use faer::Mat;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// A natural motion at a speed, q = Re(shape · e^{λt}).
@@ -61,9 +61,6 @@ pub struct Campbell {
     pub lines: Vec<Vec<Whirl>>,
 }
 
-/// Iterations of the eigenvalues' search for each of them; a few are usual.
-const ITERATIONS: usize = 100;
-
 impl RotorModel {
     /// The lowest `count` oscillating motions, without those by which springs relax, at spin `speed` (rad/s about X), ascending by frequency.
     ///
@@ -91,9 +88,11 @@ impl RotorModel {
         Ok(whirls.take(count).collect())
     }
 
-    /// Whether a motion is how springs relax, turned a little by what spins: it dies out faster than it turns, and has no resonance.
+    /// Whether a motion is how springs relax or dashpots creep, turned a little by what spins: it dies out faster than it turns, and has no
+    /// resonance.
     fn decays(&self, value: &Complex<f64>) -> bool {
-        !self.relaxing.is_empty() && -value.re > value.im
+        let turns = if self.relaxing.is_empty() { CREEPS } else { 1.0 };
+        -value.re > turns * value.im
     }
 
     /// Of (D p, ṗ) and the states of springs that relax, with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled. A growth
@@ -123,20 +122,17 @@ impl RotorModel {
                 state[(modes + i, modes + j)] = -damping[(i, j)];
             }
         }
-        let iterations = ITERATIONS * size;
-        // Motions that nothing brings back fall together at zero, where the last digit may not settle.
-        let schur = [1.0, 1e3, 1e6]
-            .into_iter()
-            .find_map(|times| Schur::try_new(state.clone(), times * f64::EPSILON, iterations));
-        let schur = schur.ok_or(RotorError::Eigenvalues { speed, iterations })?;
-        let rounding = 2.0 * modes as f64 * f64::EPSILON * state.amax();
+        let state = Mat::from_fn(size, size, |i, j| state[(i, j)]);
+        let found = state.eigenvalues().map_err(|_| RotorError::Eigenvalues { speed, size })?;
+        let rounding = 2.0 * modes as f64 * f64::EPSILON * state.norm_max();
         let settled = |value: &Complex<f64>| match value.re.abs() <= rounding {
             true => Complex::new(0.0, value.im),
             false => *value,
         };
         let oscillates = |value: &Complex<f64>| value.im > ROUNDING * least;
         let mut values: Vec<Complex<f64>> =
-            schur.complex_eigenvalues().iter().map(settled).filter(oscillates).collect();
+            found.iter().map(|found| Complex::new(found.re, found.im)).collect();
+        values = values.iter().map(settled).filter(oscillates).collect();
         values.sort_by(|a, b| a.im.total_cmp(&b.im));
         Ok(values)
     }
@@ -237,6 +233,8 @@ impl RotorModel {
     }
 }
 
+/// Times that a motion dies out faster than it turns from which dashpots are said to creep: nothing that swings is so damped.
+const CREEPS: f64 = 1e3;
 /// Motions less alike than this are not the same.
 const ALIKE: f64 = 0.1;
 /// Times that springs may have more part in a motion by relaxing than what swings has; what grows is told in any case.
