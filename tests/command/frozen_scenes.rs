@@ -123,7 +123,8 @@ fn given(name: &str, file: &str) -> Given {
         let kept = content.lines().filter(|line| !line.starts_with("window_start"));
         content = kept.map(|line| format!("{line}\n")).collect();
     }
-    let command = if content.contains("numerics") {
+    let based = content.contains("\nbase = ");
+    let command = if based || content.contains("numerics") {
         "run"
     } else if name.ends_with("_modes") {
         "modes"
@@ -131,6 +132,10 @@ fn given(name: &str, file: &str) -> Given {
         "statics"
     };
     let written = write(folder.path(), file, &content);
+    if let Some((_, name)) = content.split_once("\nbase = \"") {
+        let name = name.split('"').next().expect("a file");
+        write(folder.path(), name, &read(Path::new(&scene(name))));
+    }
     let out = folder.path().join("out");
     done(&[command, &written, "--out", &text(&out)]);
     let names = json(&out.join("series.columns.json"));

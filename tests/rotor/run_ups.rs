@@ -53,6 +53,16 @@ fn run_up(changes: &[(&str, &str)]) -> Result<Passage, SimulationError> {
     Ok(passage)
 }
 
+/// What an accuracy is a part of is the overlap of contacts: without bearings a run would take steps as long as its rows, however wrong.
+#[test]
+fn an_accuracy_wants_a_bearing() {
+    let scene = changed(&[]);
+    let mut assembly = scene.assembly().unwrap();
+    assembly.bearings.clear();
+    let refused = Simulation::new(assembly, scene.run().unwrap().options);
+    assert_eq!(refused.err(), Some(SimulationError::NothingToMeasure));
+}
+
 /// Columns of moments begin with what statics has of the same loads: the shaft sags, its races tilt.
 #[test]
 fn moments_of_a_start_are_those_of_its_equilibrium() {

@@ -21,6 +21,9 @@ pub const CASE: Case = Case {
     run,
 };
 
+mod run_up;
+use run_up::{RunUp, compare};
+
 const SCRIPT: &str = include_str!("rotor.py");
 const KEPT: &str = include_str!("kept/rotor.json");
 const ROSS: &str = "ROSS 2.3.0, elements of 10 mm";
@@ -33,6 +36,7 @@ struct Kept {
     /// Of each speed, real and imaginary parts, ascending by the latter.
     eigenvalues: Vec<Vec<[f64; 2]>>,
     response: Vec<Response>,
+    run_up: RunUp,
 }
 
 /// Amplitudes (m) along both lateral axes at all speeds above 0.
@@ -117,7 +121,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         .independent(0.0, ROSS)
         .absolute(1e-5, "a thousandth of the ratios, which reach 0.01"),
     );
-    response(context, &kept, &model)
+    response(context, &kept, &model)?;
+    compare(context, &kept.run_up)
 }
 
 fn response(context: &mut CaseContext, kept: &Kept, model: &RotorModel) -> Result<(), CaseError> {
@@ -176,7 +181,8 @@ fn rerun(context: &mut CaseContext, kept: &Kept) -> Result<(), CaseError> {
     };
     let (now_values, kept_values) = (all(&now), all(kept));
     let alike = now_values.len() == kept_values.len()
-        && now_values.iter().zip(&kept_values).all(|(a, b)| (a / b - 1.0).abs() <= 1e-9);
+        && now_values.iter().zip(&kept_values).all(|(a, b)| (a / b - 1.0).abs() <= 1e-9)
+        && now.run_up.is_like(&kept.run_up);
     if !alike {
         return Err(CaseError::message("ROSS now and as kept differ by more than 1e-9"));
     }

@@ -1,10 +1,11 @@
-"""A stepped, hollow, overhung rotor on two unlike bearings in ROSS: natural motions over speed and response to an unbalance.
+"""A stepped, hollow, overhung rotor on two unlike bearings in ROSS: natural motions over speed, response to an unbalance, a run-up.
 
 pip install ross-rotordynamics "plotly<6"; python rotor.py kept/rotor.json
 ("-" prints it as the last line.)
 """
 
 import json
+import re
 import sys
 
 import numpy
@@ -22,6 +23,8 @@ BEARINGS = [(0.05, 4e7, 7e7, 500.0, 800.0), (0.4, 6e7, 9e7, 700.0, 700.0)]
 UNBALANCE = (0.25, 1e-3)
 SPEEDS = [0.0, 100.0, 200.0, 300.0, 400.0, 500.0, 750.0, 1000.0, 1500.0, 2000.0]
 MOTIONS = 8
+# From rest at a constant rate: end, s; speed there, rad/s; kg m; steps of Newmark's method and rows, s; places, m.
+RUN_UP = {"end": 0.5, "top": 2600.0, "unbalance": 1e-5, "step": 1e-5, "interval": 5e-4, "places": [0.25, 0.5]}
 
 
 def node(place):
@@ -58,6 +61,25 @@ def lateral_motions(rotor, speed):
     return [[re, im] for im, re in found[:MOTIONS]]
 
 
+def run_up(rotor, driven_along_x):
+    """Displacements (m) along both lateral axes at the places, row by row. A drive whose torque stays along X leaves tilted discs the moment
+    of their angular acceleration; one that acts along each section's own axis does not."""
+    end, step = RUN_UP["end"], RUN_UP["step"]
+    rate = RUN_UP["top"] / end
+    time = numpy.arange(round(end / step) + 1) * step
+    speed, angle = rate * time, 0.5 * rate * time**2
+    force = numpy.zeros((len(time), rotor.ndof))
+    first = 6 * node(UNBALANCE[0])
+    out, back = RUN_UP["unbalance"] * speed**2, RUN_UP["unbalance"] * rate
+    force[:, first] = out * numpy.cos(angle) + back * numpy.sin(angle)
+    force[:, first + 1] = out * numpy.sin(angle) - back * numpy.cos(angle)
+    of_acceleration = rotor.Ksdt() * (1.0 if driven_along_x else 0.0)
+    _, moved = rotor.integrate_system(speed, force, time, Ksdt=of_acceleration)
+    every = round(RUN_UP["interval"] / step)
+    columns = [6 * node(place) + i for place in RUN_UP["places"] for i in (0, 1)]
+    return [[float(f"{value:.6e}") for value in row] for row in moved[::every, columns]]
+
+
 def main():
     of = rotor()
     result = {"version": ross.__version__, "speeds": SPEEDS}
@@ -75,13 +97,16 @@ def main():
         }
         for place in (0.05, 0.25, 0.5)
     ]
+    far = [numpy.hypot(row[0], row[1]) for row in run_up(of, True)]
+    result["run_up"] = RUN_UP | {"rows": run_up(of, False), "peak_driven_along_x": float(f"{max(far):.6e}")}
     if sys.argv[1] == "-":
         # The last line: its imports print lines of their own.
         print(json.dumps(result))
         return
     with open(sys.argv[1], "w") as file:
-        json.dump(result, file, indent=1)
-        file.write("\n")
+        text = json.dumps(result, indent=1)
+        # A row a line.
+        file.write(re.sub(r"\[\s+([-\d.e+]+),\s+([-\d.e+]+),\s+([-\d.e+]+),\s+([-\d.e+]+)\s+\]", r"[\1, \2, \3, \4]", text) + "\n")
 
 
 main()

@@ -21,6 +21,10 @@ pub enum SimulationError {
     )]
     NoErrorEstimate,
     #[error(
+        "errors are measured by overlaps of contacts, and there is no bearing; give a step in the place of an accuracy"
+    )]
+    NothingToMeasure,
+    #[error(
         "a fraction of the stability limit is a step for Runge-Kutta of fourth order only; give \
          {0} an accuracy or a step (numerics.accuracy, numerics.step)"
     )]

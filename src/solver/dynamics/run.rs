@@ -133,6 +133,9 @@ fn controller(
         }
         (Integrator::RungeKutta, Stepping::Accuracy(_)) => Err(SimulationError::NoErrorEstimate),
         (Integrator::RungeKutta, _) | (_, Stepping::Fixed(_)) => Ok(None),
+        (_, Stepping::Accuracy(_)) if assembly.bearings.is_empty() => {
+            Err(SimulationError::NothingToMeasure)
+        }
         (Integrator::DormandPrince, Stepping::Accuracy(accuracy)) => {
             Ok(Some(Controller::new(assembly, accuracy, dormand_prince::ERROR_ORDER)))
         }

@@ -247,7 +247,9 @@ impl RotorModel {
                 1.0 => 0.0,
                 spin => (1.0 - spin).abs() * speed,
             };
-            let stiff = vibrations.stiffened(seen);
+            let mut stiff = vibrations.stiffened(seen);
+            // Without damping, whose answers among the shapes are more at one stiffness than at another: speeds go by their numbers.
+            stiff.damping.fill(0.0);
             RotorModel::of(&stiff, modes, stations.to_vec(), sections)?.critical_speeds()
         };
         let stiffest = at(f64::INFINITY)?;
