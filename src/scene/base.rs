@@ -102,7 +102,9 @@ impl Document {
             (path, None) => self.layer.take_away(&path),
             (path, Some(name)) => {
                 let of_name = self.named.iter_mut().filter(|of| of.name == name);
-                of_name.fold(false, |some, of| of.layer.take_away(&path) || some)
+                // Each of them, not up to the first.
+                let taken: Vec<bool> = of_name.map(|of| of.layer.take_away(&path)).collect();
+                taken.contains(&true)
             }
         }
     }
