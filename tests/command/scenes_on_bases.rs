@@ -1,6 +1,6 @@
 //! Scenes on a base at the command line: what is read, packed, swept and gone on with.
 
-use crate::command_line_common::{bearing, changed, done, read, refused, scene, text, write};
+use crate::command_line_common::{changed, done, read, refused, scene, text, write};
 use std::fs;
 use tempfile::tempdir;
 
@@ -39,24 +39,6 @@ fn a_pack_holds_the_bases() {
     done(&["statics", &path, "--dry"]);
     let said = refused(&["pack", &path, "--out", &text(&root.path().join("other"))]);
     assert!(said.contains("base.toml\" cannot be packed with the scene"), "{said}");
-}
-
-/// A finished or begun sweep is one of its base as well.
-#[test]
-fn a_sweep_begins_anew_when_its_base_changes() {
-    let root = tempdir().unwrap();
-    let base = fs::read_to_string(scene("deep_groove_tilt.toml")).unwrap();
-    write(root.path(), "base.toml", &base);
-    let path = write(root.path(), "study.toml", "base = \"base.toml\"\n");
-    let out = text(&root.path().join("out"));
-    let sweep = ["sweep", &path, "--vary", "bearing.ball_phase=0 deg,10 deg", "--out", &out];
-    done(&sweep);
-    let first = read(&root.path().join("out/sweep.csv"));
-    write(root.path(), "base.toml", &changed(&base, "balls = 8", "balls = 9"));
-    let again = bearing(&sweep);
-    let second = read(&root.path().join("out/sweep.csv"));
-    assert_eq!(again.code, Some(0), "{again:?}");
-    assert!(first != second);
 }
 
 /// A run goes on from its state where base and scene are what they were, and is refused where the base is not.

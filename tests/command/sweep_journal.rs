@@ -29,6 +29,10 @@ impl Started {
     fn new() -> Started {
         let root = tempdir().unwrap();
         let path = slow_scene(root.path());
+        Started::of(root, path)
+    }
+
+    fn of(root: TempDir, path: String) -> Started {
         let vary = vary_phase(POINTS);
         let out = root.path().join("out");
         let mut child = command()
@@ -185,6 +189,28 @@ fn a_journal_that_was_cut_anywhere_is_resumed() {
         assert!(!journal.exists());
         fs::remove_file(out.join("sweep.json")).unwrap();
     }
+}
+
+/// A sweep is one of its scene's base as well.
+#[test]
+fn the_journal_of_another_base_is_refused() {
+    let root = tempdir().unwrap();
+    let base = slow_scene(root.path());
+    let path = write(root.path(), "study.toml", "base = \"slow.json\"\n");
+    let mut sweep = Started::of(root, path);
+    sweep.stop("-KILL");
+    fs::write(&base, changed(&read(Path::new(&base)), "\"balls\": 13", "\"balls\": 12")).unwrap();
+    let said = refused(&[
+        "sweep",
+        &sweep.path,
+        "--vary",
+        &sweep.vary,
+        "--threads",
+        "1",
+        "--out",
+        &text(&sweep.out),
+    ]);
+    assert!(said.contains("sweep.journal belongs to an unfinished sweep"), "{said}");
 }
 
 #[test]

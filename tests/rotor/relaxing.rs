@@ -281,7 +281,9 @@ fn few_shapes_follow_what_brakes_them() {
             stiffness[(first + i, first + i)] += 1e6;
             damping[(first + i, first + i)] += if number == 0 { 3e4 } else { 0.0 };
         }
-        for (k, relaxation_time) in [(4e6, 1e-1), (9e6, 1e-2), (2e7, 1e-3)] {
+        // Dashpots at one end, rubber at the other: either pulls where nothing else does.
+        let elements = if number == 0 { &[][..] } else { &[(4e6, 1e-1), (9e6, 1e-2), (2e7, 1e-3)] };
+        for &(k, relaxation_time) in elements {
             let mut levers = DMatrix::zeros(6, size);
             (levers[(1, first)], levers[(2, first + 1)]) = (1.0, 1.0);
             let stiffness = [0.0, k, k, 0.0, 0.0, 0.0];
@@ -307,7 +309,7 @@ fn few_shapes_follow_what_brakes_them() {
     for (few, whole) in few.iter().zip(&whole) {
         let apart = (few.eigenvalue - whole.eigenvalue).norm() / whole.eigenvalue.norm();
         println!("{} {} {apart:e}", few.eigenvalue, whole.eigenvalue);
-        // Shapes that answer forces at rest miss by a power of frequency: the slowest by 2e-11, the eighth by 1.5e-7. Without them
+        // Shapes that answer forces at rest miss by a power of frequency: the slowest by 2e-11, the eighth by 2.5e-7. Without them
         // frequencies by 8e-4 and damping by 0.9 %.
         assert!(apart <= 1e-6, "{apart:e}");
         assert!((few.damping_ratio() / whole.damping_ratio() - 1.0).abs() <= 1e-5);
