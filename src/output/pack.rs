@@ -56,7 +56,7 @@ pub enum PackError {
     #[error("{name:?} is no plain file name")]
     SceneName { name: String },
     #[error(
-        "{name:?} cannot be packed with the scene: it is not in its folder or below it, or has the name of another file of a pack. Hint: put meshes \
+        "{name:?} is not in the scene's folder or below it, where it could be packed with the scene, or has the name of another file of a pack. Hint: put meshes \
          and bases beside the scene and write their names alone"
     )]
     Elsewhere { name: String },

@@ -37,7 +37,8 @@ impl Document {
             let reason = format!("{} cannot be read: {}", path.display(), error.problem);
             self.refused(BASE, reason, "a relative name starts at the scene's folder")
         };
-        let (source, format) = source::read(&path).map_err(unread)?;
+        let (mut source, format) = source::read(&path).map_err(unread)?;
+        source.is_fixed = Path::new(name).is_absolute();
         let mut base = Document::of_source(source, format, above + 1)?;
         if let Some(Checked::Text(paths)) = self.value(WITHOUT) {
             for path in paths.split(',').map(str::trim) {
@@ -56,13 +57,29 @@ impl Document {
         Path::new(self.name()).parent().unwrap_or(Path::new(""))
     }
 
-    /// A file that the value of a key names, from the folder of the file that the value stands in, and the same from the scene's.
+    /// A file that the value of a key names, from the folder of the file that the value stands in, and the same from the scene's unless
+    /// its path begins at the root.
     pub(crate) fn file(&self, key: &str, name: &str) -> (PathBuf, String) {
-        let from = PathBuf::from(self.place_of_key(key).file);
-        let path = from.parent().unwrap_or(Path::new("")).join(name);
-        let own = path.strip_prefix(self.folder()).unwrap_or(&path);
-        let shown = own.display().to_string();
+        let from = self.place_of_key(key).file;
+        let path = Path::new(&from).parent().unwrap_or(Path::new("")).join(name);
+        let fixed = Path::new(name).is_absolute()
+            || self.sources().any(|(source, fixed)| fixed && source.name == from);
+        let shown = self.from_folder(&path, fixed);
         (path, shown)
+    }
+
+    fn from_folder(&self, path: &Path, fixed: bool) -> String {
+        let own = path.strip_prefix(self.folder()).ok().filter(|_| !fixed);
+        own.unwrap_or(path).display().to_string()
+    }
+
+    /// The scene and its bases, and whether a path from the root leads to them.
+    fn sources(&self) -> impl Iterator<Item = (&Source, bool)> {
+        let first = (&*self.source, false);
+        std::iter::successors(Some(first), |(of, fixed)| {
+            let base = of.base.as_deref()?;
+            Some((base, *fixed || base.is_fixed))
+        })
     }
 
     /// This scene over its base.
@@ -140,12 +157,9 @@ impl Document {
 
     /// Files that the scene is on, its base first: names from the scene's folder, and texts.
     pub fn bases(&self) -> Vec<(String, &str)> {
-        let sources = std::iter::successors(self.source.base.as_deref(), |of| of.base.as_deref());
-        let name = |source: &Source| {
-            let path = Path::new(&source.name);
-            path.strip_prefix(self.folder()).unwrap_or(path).display().to_string()
-        };
-        sources.map(|source| (name(source), source.text.as_str())).collect()
+        let name = |source: &Source, fixed| self.from_folder(Path::new(&source.name), fixed);
+        let bases = self.sources().skip(1);
+        bases.map(|(source, fixed)| (name(source, fixed), source.text.as_str())).collect()
     }
 }
 

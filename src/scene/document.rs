@@ -100,7 +100,8 @@ impl Document {
 
     /// Reads a scene from text; `name` stands for the file in messages.
     pub fn read_str(text: &str, format: Format, name: &str) -> Result<Document, SceneError> {
-        let source = Source { name: name.to_string(), text: text.to_string(), base: None };
+        let (name, text) = (name.to_string(), text.to_string());
+        let source = Source { name, text, base: None, is_fixed: false };
         Document::of_source(source, format, 0)
     }
 

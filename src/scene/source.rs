@@ -25,6 +25,8 @@ pub struct Source {
     pub text: String,
     /// What the scene is on; its offsets count on from the end of this text.
     pub base: Option<Arc<Source>>,
+    /// Whether a scene names it, its base, by a path from the root: then it lies where it lies.
+    pub is_fixed: bool,
 }
 
 impl Source {
@@ -82,13 +84,13 @@ fn format_of(path: &Path) -> Option<Format> {
 /// UTF-8 text of a file, without byte-order mark.
 pub fn decode(name: String, bytes: Vec<u8>) -> Result<Source, SceneError> {
     match String::from_utf8(bytes) {
-        Ok(text) => Ok(Source { name, text, base: None }),
+        Ok(text) => Ok(Source { name, text, base: None, is_fixed: false }),
         Err(error) => {
             let valid = error.utf8_error().valid_up_to();
             let bytes = error.into_bytes();
             let utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
             let text = String::from_utf8_lossy(&bytes[..valid]).into_owned();
-            let source = Source { name, text, base: None };
+            let source = Source { name, text, base: None, is_fixed: false };
             Err(source.error(valid, "", Problem::NotUtf8 { utf16 }))
         }
     }

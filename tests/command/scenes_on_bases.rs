@@ -32,13 +32,27 @@ fn a_pack_holds_the_bases() {
     fs::remove_dir_all(root.path().join("parts")).unwrap();
     done(&["statics", &format!("{pack}/scene.toml"), "--out", &out]);
     assert!(done(&["compare", &pack, &out]).starts_with("equal: "));
-    // What lies elsewhere cannot be packed.
+    // What lies elsewhere cannot be packed, nor what is named from the root.
+    let path = write(
+        root.path(),
+        "fixed.toml",
+        &format!("base = \"{}\"\n", scene("deep_groove_tilt.toml")),
+    );
+    let said = refused(&["pack", &path, "--out", &text(&root.path().join("fixed"))]);
+    assert!(
+        said.contains("deep_groove_tilt.toml\" is not in the scene's folder or below it"),
+        "{said}"
+    );
+    let inside = write(root.path(), "base.toml", &base);
+    let path = write(root.path(), "fixed.toml", &format!("base = \"{inside}\"\n"));
+    let said = refused(&["pack", &path, "--out", &text(&root.path().join("fixed"))]);
+    assert!(said.contains("base.toml\" is not in the scene's folder or below it"), "{said}");
     fs::create_dir(root.path().join("deep")).unwrap();
     write(root.path(), "base.toml", &base);
     let path = write(root.path(), "deep/study.toml", "base = \"../base.toml\"\n");
     done(&["statics", &path, "--dry"]);
     let said = refused(&["pack", &path, "--out", &text(&root.path().join("other"))]);
-    assert!(said.contains("base.toml\" cannot be packed with the scene"), "{said}");
+    assert!(said.contains("base.toml\" is not in the scene's folder or below it"), "{said}");
 }
 
 /// A run goes on from its state where base and scene are what they were, and is refused where the base is not.

@@ -195,7 +195,7 @@ fn modes_say_which_of_them_are_beyond_the_natural_shapes() {
         let (note, found) = note_of(&shipped, below);
         let note = note.unwrap();
         let numbers = note.split([' ', ',']).filter_map(|word| word.parse().ok());
-        let [count, limit] = numbers.collect::<Vec<f64>>()[..] else { panic!("{note}") };
+        let [count, limit, ..] = numbers.collect::<Vec<f64>>()[..] else { panic!("{note}") };
         let beyond = found.iter().filter(|frequency| **frequency > limit).count();
         assert!(beyond > 0 && beyond as f64 == count, "{note}: {found:?}");
     }

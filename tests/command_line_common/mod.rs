@@ -104,13 +104,14 @@ pub fn files(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Scenes of bearings that have an equilibrium: those of a solid and of a shaft that bends, which is there in a run only,
-/// have tests of their own (`solid_command`, `scene_shaft`).
+/// Scenes of bearings that have an equilibrium: those of a solid, of a shaft that bends, which is there in a run only, and on another
+/// scene have tests of their own (`solid_command`, `scene_shaft`, `scenes_on_bases`).
 pub fn bearing_scenes() -> Vec<String> {
     let mut names = files(&scenes());
     names.retain(|name| {
         let path = scene(name);
-        let other = |text: String| text.contains("[solid") || text.contains(".beam]");
+        let words = ["[solid", ".beam]", "\nbase = "];
+        let other = |text: String| words.iter().any(|word| text.contains(word));
         Path::new(&path).is_file() && !other(read(Path::new(&path)))
     });
     assert!(names.len() >= 8, "{names:?}");

@@ -218,7 +218,7 @@ fn diagram(context: &mut CaseContext) -> Result<(), CaseError> {
     let model = Shaft::overhung().model(0.05)?;
     let speeds: Vec<f64> = (0..50).map(|n| 50.0 * f64::from(n)).collect();
     let lines = model.campbell(&speeds, 4)?;
-    let svg = plots::campbell("Overhung disc: frequencies over speed", &lines)?;
+    let svg = plots::campbell("Overhung disc", &lines, &[])?;
     context.figure(
         "campbell",
         svg,

@@ -183,7 +183,9 @@ impl Spinning {
     /// The diagram as picture and as table.
     pub fn write(&self, folder: &Path, title: &str) -> Fallible<[PathBuf; 2]> {
         let picture = folder.join("campbell.svg");
-        write_atomic(&picture, campbell(title, &self.campbell)?.as_bytes())?;
+        let critical = self.critical.iter().flatten().map(|critical| critical.speed);
+        let critical: Vec<f64> = critical.collect();
+        write_atomic(&picture, campbell(title, &self.campbell, &critical)?.as_bytes())?;
         let mut columns = vec![Column::new("speed", "rad/s")];
         columns.extend((1..=self.campbell.lines.len()).flat_map(|line| {
             [

@@ -5,11 +5,11 @@ use super::{Curve, PlotError};
 use crate::solver::rotor::whirl::Campbell;
 use std::f64::consts::TAU;
 
-/// Campbell diagram in Hz over rpm.
+/// Campbell diagram in Hz over rpm, with the critical speeds (rad/s) up to its end. How a line turns is told at its last speed.
 ///
 /// # Errors
 /// As [`xy`].
-pub fn campbell(title: &str, of: &Campbell) -> Result<String, PlotError> {
+pub fn campbell(title: &str, of: &Campbell, critical: &[f64]) -> Result<String, PlotError> {
     let rpm = |speed: f64| speed * 60.0 / TAU;
     let mut highest = 0.0f64;
     let mut curves: Vec<Curve> = Vec::new();
@@ -25,8 +25,14 @@ pub fn campbell(title: &str, of: &Campbell) -> Result<String, PlotError> {
     let last = of.speeds.last().copied().unwrap_or(0.0);
     let end = last.min(highest * TAU);
     curves.push(Curve::new("once a turn", vec![[0.0, 0.0], [rpm(end), end / TAU]]));
+    let meet = critical.iter().filter(|speed| speed.abs() <= end.abs());
+    let meet: Vec<[f64; 2]> =
+        meet.map(|speed| [rpm(speed.copysign(last)), speed.abs() / TAU]).collect();
+    if !meet.is_empty() {
+        curves.push(Curve::separate("critical speeds", meet));
+    }
     xy(&XyPlot {
-        title: title.into(),
+        title: format!("{title}: whirl, turning as at {:.0} rpm", rpm(last)),
         x: Axis::linear("speed", "rpm"),
         y: Axis::linear("frequency", "Hz"),
         style: Style::Lines,
