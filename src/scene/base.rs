@@ -64,11 +64,11 @@ impl Document {
         let path = Path::new(&from).parent().unwrap_or(Path::new("")).join(name);
         let fixed = Path::new(name).is_absolute()
             || self.sources().any(|(source, fixed)| fixed && source.name == from);
-        let shown = self.from_folder(&path, fixed);
+        let shown = self.shown_path(&path, fixed);
         (path, shown)
     }
 
-    fn from_folder(&self, path: &Path, fixed: bool) -> String {
+    fn shown_path(&self, path: &Path, fixed: bool) -> String {
         let own = path.strip_prefix(self.folder()).ok().filter(|_| !fixed);
         own.unwrap_or(path).display().to_string()
     }
@@ -157,7 +157,7 @@ impl Document {
 
     /// Files that the scene is on, its base first: names from the scene's folder, and texts.
     pub fn bases(&self) -> Vec<(String, &str)> {
-        let name = |source: &Source, fixed| self.from_folder(Path::new(&source.name), fixed);
+        let name = |source: &Source, fixed| self.shown_path(Path::new(&source.name), fixed);
         let bases = self.sources().skip(1);
         bases.map(|(source, fixed)| (name(source, fixed), source.text.as_str())).collect()
     }
