@@ -58,7 +58,10 @@ impl MeshFile<'_> {
                 _ => mesh_with_sets(mesh)?,
             };
             write_atomic(&path, &bytes)?;
-            said += &format!("wrote {}, lengths in m\n", path.display());
+            said += &format!(
+                "wrote {}, in m, where it stands in the scene and with all its sets\n",
+                path.display()
+            );
         }
         Ok(said)
     }

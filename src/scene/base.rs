@@ -4,16 +4,17 @@
 
 use crate::scene::document::{Document, Given, Layer};
 use crate::scene::error::{Problem, SceneError};
+use crate::scene::items::Item;
 use crate::scene::keys::{self, KEYS};
 use crate::scene::source::{self, Source};
 use crate::scene::value::Checked;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 /// Key of the base's file.
 pub(super) const BASE: &str = "base";
 /// Key of what the base says and the scene has not.
-const WITHOUT: &str = "without";
+pub(super) const WITHOUT: &str = "without";
 /// Bases may have bases, so many in all.
 const DEEPEST: usize = 8;
 
@@ -69,8 +70,9 @@ impl Document {
     }
 
     fn shown_path(&self, path: &Path, fixed: bool) -> String {
-        let own = path.strip_prefix(self.folder()).ok().filter(|_| !fixed);
-        own.unwrap_or(path).display().to_string()
+        let path = straight(path);
+        let own = path.strip_prefix(straight(self.folder())).ok().filter(|_| !fixed);
+        own.unwrap_or(&path).display().to_string()
     }
 
     /// The scene and its bases, and whether a path from the root leads to them.
@@ -87,7 +89,6 @@ impl Document {
         base.shift(self.source.length());
         let own = Arc::unwrap_or_clone(self.source);
         base.source = Arc::new(Source { base: Some(base.source), ..own });
-        base.refuse_unheard(&self.layer)?;
         base.layer.lay_over(&self.layer);
         for named in self.named {
             let same =
@@ -100,47 +101,55 @@ impl Document {
         let own_names: Vec<&String> = self.assumptions.iter().map(|of| &of.name).collect();
         base.assumptions.retain(|of| !own_names.contains(&&of.name));
         base.assumptions.extend(self.assumptions);
-        if !self.sweep.is_empty() {
+        if self.layer.tables.iter().any(|(table, _)| *table == "sweep") {
             base.sweep = self.sweep;
         }
+        base.refuse_unheard(&self.layer)?;
         Ok(base)
     }
 
     /// Takes away a key, a table with all that is in it, or all that has a name (`sensor.top`); whether there was anything.
     fn take_away(&mut self, path: &str) -> bool {
+        if [BASE, WITHOUT].contains(&path) {
+            return false;
+        }
         let (named, assumed, swept) = (self.named.len(), self.assumptions.len(), self.sweep.len());
-        self.named.retain(|of| format!("{}.{}", of.table, of.name) != path);
+        // A whole table goes with those that have names.
+        self.named.retain(|of| of.table != path && format!("{}.{}", of.table, of.name) != path);
         self.assumptions.retain(|of| !is_at(&format!("assumptions.{}", of.name), path));
         self.sweep.retain(|_| path != "sweep");
-        if (named, assumed, swept) != (self.named.len(), self.assumptions.len(), self.sweep.len()) {
-            return true;
-        }
+        let some =
+            (named, assumed, swept) != (self.named.len(), self.assumptions.len(), self.sweep.len());
         match keys::without_name(path) {
-            (path, None) => self.layer.take_away(&path),
+            (path, None) => self.layer.take_away(&path) || some,
             (path, Some(name)) => {
                 let of_name = self.named.iter_mut().filter(|of| of.name == name);
                 // Each of them, not up to the first.
                 let taken: Vec<bool> = of_name.map(|of| of.layer.take_away(&path)).collect();
-                taken.contains(&true)
+                taken.contains(&true) || some
             }
         }
     }
 
-    /// A key without a name that every name of the base has for itself would change nothing.
+    /// What the scene says without a name and every name has for itself would change nothing.
     fn refuse_unheard(&self, own: &Layer) -> Result<(), SceneError> {
         for (key, given) in KEYS.iter().zip(&own.given) {
-            let Some(offset) = given.as_ref().and_then(|given| given.offset) else { continue };
+            let in_list = || {
+                let listed = own.items.iter().find(|item| item.table == key.table());
+                listed.map(Item::begins).or(own.emptied.contains(&key.table()).then_some(0))
+            };
+            let given = given.as_ref().and_then(|given| given.offset);
+            let Some(offset) = given.or_else(in_list) else { continue };
             let (names, nothing) = self.out_of_reach(key.path);
             if nothing {
-                let (table, rest) = key.path.split_once('.').unwrap_or((key.path, ""));
+                let path = if given.is_some() { key.path } else { key.table() };
+                let (table, rest) = path.split_once('.').unwrap_or((path, ""));
                 let all: Vec<String> =
                     names.iter().map(|name| format!("[{table}.{name}]")).collect();
-                let reason = format!(
-                    "it changes nothing, since {} of the base say it themselves",
-                    all.join(", ")
-                );
+                let reason =
+                    format!("it changes nothing, since {} say it themselves", all.join(", "));
                 let advice = format!("write {table}.{}.{rest}", names[0]);
-                return Err(self.error_at(offset, key.path, Problem::refused(reason, advice)));
+                return Err(self.error_at(offset, path, Problem::refused(reason, advice)));
             }
         }
         Ok(())
@@ -163,6 +172,21 @@ impl Document {
     }
 }
 
+/// A path without the ways into a folder and out again.
+fn straight(path: &Path) -> PathBuf {
+    let mut straight = PathBuf::new();
+    for part in path.components() {
+        let back = part == Component::ParentDir
+            && matches!(straight.components().next_back(), Some(Component::Normal(_)));
+        if back {
+            straight.pop();
+        } else {
+            straight.push(part);
+        }
+    }
+    straight
+}
+
 /// Whether a key or table is this one or in it.
 fn is_at(known: &str, path: &str) -> bool {
     known.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
@@ -174,10 +198,11 @@ impl Layer {
         for (key, given) in KEYS.iter().zip(&mut self.given) {
             some |= is_at(key.path, path) && given.take().is_some();
         }
-        let items = self.items.len();
+        let lists = (self.items.len(), self.emptied.len());
         self.items.retain(|item| !is_at(item.table, path));
+        self.emptied.retain(|table| !is_at(table, path));
         self.tables.retain(|(table, _)| !is_at(table, path));
-        some || items != self.items.len()
+        some || lists != (self.items.len(), self.emptied.len())
     }
 
     fn shift(&mut self, by: usize) {

@@ -1,7 +1,7 @@
 //! A scene as a person wrote it: every given key, checked against the key table, with its place.
 
 use crate::scene::about::About;
-use crate::scene::base::BASE;
+use crate::scene::base::{BASE, WITHOUT};
 use crate::scene::error::{Place, Problem, SceneError};
 use crate::scene::items::Item;
 use crate::scene::keys::{self, KEYS, Key, Leads};
@@ -313,9 +313,11 @@ impl Document {
         let rows: Vec<usize> =
             key.rivals().filter_map(|rival| keys::find(rival.path)).map(|(row, _)| row).collect();
         let own = |named: &&Named| {
-            let Layer { given, items, .. } = &named.layer;
+            let Layer { given, items, emptied, .. } = &named.layer;
             let says = given[row].is_some() || rows.iter().any(|at| given[*at].is_some());
-            let lists = key.in_list() && items.iter().any(|item| item.table == key.table());
+            let lists = key.in_list()
+                && (items.iter().any(|item| item.table == key.table())
+                    || emptied.contains(&key.table()));
             named.table == table && (says || lists)
         };
         let own: Vec<String> = self.named.iter().filter(own).map(|n| n.name.clone()).collect();
@@ -340,7 +342,7 @@ impl Document {
     fn row<'p>(&self, path: &'p str) -> Result<Leads<'p>, SceneError> {
         let error = |problem| SceneError::new(Place::file(&self.source.name), path, problem);
         let leads = keys::find_named(path).ok_or_else(|| error(sweep::unknown_key(path)))?;
-        if leads.key.path == BASE {
+        if [BASE, WITHOUT].contains(&leads.key.path) {
             let advice = "write it into the scene, or name the other scene";
             return Err(error(Problem::refused("a base is read before keys are set", advice)));
         }

@@ -17,6 +17,11 @@ pub(super) struct Item {
 }
 
 impl Item {
+    /// Where its table begins.
+    pub fn begins(&self) -> usize {
+        self.offset
+    }
+
     pub fn shift(&mut self, by: usize) {
         self.offset += by;
         self.given.iter_mut().for_each(|(_, given)| given.shift(by));

@@ -195,6 +195,9 @@ impl Layer {
         };
         self.items.retain(|item| !replaced(item));
         self.items.extend(other.items.iter().cloned());
+        // For what this one is laid over in turn.
+        self.emptied.retain(|table| other.items.iter().all(|item| item.table != *table));
+        self.emptied.extend(&other.emptied);
     }
 }
 

@@ -37,9 +37,6 @@ pub struct Whirling {
     pub top_speed: f64,
     /// Whose it is, where others turn at other speeds.
     pub fastest: Option<String>,
-    vibrations: Vibrations,
-    /// y, z and tilts of each place for a unit of every coordinate.
-    rows: DMatrix<f64>,
 }
 
 /// Speed that is given at the end of all that changes, rad/s.
@@ -129,20 +126,19 @@ pub fn whirling(
     let rows = rows.resize_horizontally(size, 0.0);
     let stations: Vec<f64> = (0..places.len()).map(|place| place as f64).collect();
     let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
-    Ok(Whirling { model, places, top_speed, fastest: named, vibrations: all, rows })
+    Ok(Whirling { model, places, top_speed, fastest: named })
 }
 
 impl Whirling {
-    /// [`RotorModel::critical_speeds_of`] this, up to `limit`, rad/s.
+    /// [`RotorModel::critical_speeds_up_to`] of this, rad/s.
     ///
     /// # Errors
     /// As that.
     pub fn critical_speeds(&self, limit: f64) -> Result<Vec<Critical>, RotorError> {
-        if self.vibrations.relaxing.is_empty() {
-            return self.model.critical_speeds();
+        match self.model.relaxing.is_empty() {
+            true => self.model.critical_speeds(),
+            false => self.model.critical_speeds_up_to(limit),
         }
-        let (stations, rows) = (&self.model.stations, Some(&self.rows));
-        RotorModel::critical_speeds_of(&self.vibrations, MODES, stations, rows, limit)
     }
 }
 

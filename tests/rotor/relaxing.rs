@@ -304,6 +304,17 @@ fn few_shapes_follow_what_brakes_them() {
         let model = RotorModel::of(&all, modes, matrices.stations.clone(), None).unwrap();
         model.whirls(SPEED, 8).unwrap()
     };
+    // Critical speeds are told by their numbers, however many shapes there are.
+    let critical = |modes: usize| {
+        let model = RotorModel::of(&all, modes, matrices.stations.clone(), None).unwrap();
+        let found = model.critical_speeds_up_to(3.0 * SPEED).unwrap();
+        found.iter().map(|of| of.speed).collect::<Vec<_>>()
+    };
+    let (few, whole) = (critical(18), critical(size));
+    assert!(few.len() >= 2 && few.len() == whole.len(), "{few:?} {whole:?}");
+    for (few, whole) in few.iter().zip(&whole) {
+        assert!((few / whole - 1.0).abs() <= 1e-6, "{few} {whole}");
+    }
     let (few, whole) = (whirls(18), whirls(size));
     assert!(size > 60 && whole.len() == 8, "{size}");
     for (few, whole) in few.iter().zip(&whole) {

@@ -153,6 +153,7 @@ fn sweeps_and_meshes_of_a_base() {
         ("base.toml", &base),
         ("same.toml", "base = \"base.toml\"\n"),
         ("own.toml", "base = \"base.toml\"\n[sweep]\n\"body.shaft.speed\" = [\"1 rpm\"]\n"),
+        ("no.toml", "base = \"base.toml\"\n[sweep]\n"),
         ("parts/part.toml", mesh),
         ("part.toml", "base = \"parts/part.toml\"\n"),
     ]);
@@ -164,10 +165,68 @@ fn sweeps_and_meshes_of_a_base() {
         let SweepValues::List(list) = &axis.values else { panic!("a list") };
         assert_eq!((axis.key.as_str(), list.len()), (key, values));
     }
+    assert!(Document::read_file(&root.path().join("no.toml")).unwrap().sweep().is_empty());
     let Subject::Solid(solid) = read(&root, "part.toml").unwrap() else { panic!("a solid") };
     let source = format!("{:?}", solid.mesh.source);
     let path = root.path().join("parts/part.msh");
     assert!(source.contains(&format!("name: \"parts/part.msh\", path: {path:?}")), "{source}");
+}
+
+/// Tables with names over those of a base: empty lists last, what reaches a new name is heard, what reaches nothing is refused.
+#[test]
+fn lists_of_names_over_those_of_a_base() {
+    let load = "load = [{ at = \"0 mm\", z = \"-3000 N\" }]\n";
+    let base = changed(
+        &shipped(),
+        &[(load, ""), ("[body.shaft.beam]\n", &format!("[body.beam]\n{load}[body.shaft.beam]\n"))],
+    );
+    let long = changed(&shipped(), &[(load, "")]);
+    let own = shipped();
+    let mid = "[bearing]\ninner_at = \"0 mm\"\n[bearing.mid]\nballs = 9\n";
+    let root = folder(&[
+        ("base.toml", &base),
+        ("own.toml", &own),
+        ("long.toml", &long),
+        ("empty.toml", "base = \"base.toml\"\n[body.shaft.beam]\nload = []\n"),
+        (
+            "list.toml",
+            "base = \"own.toml\"\n[body.beam]\nload = [{ at = \"0 mm\", z = \"-1 N\" }]\n",
+        ),
+        ("none.toml", "base = \"own.toml\"\n[body.beam]\nload = []\n"),
+        ("mid.toml", &format!("base = \"own.toml\"\n{mid}")),
+        (
+            "mid_long.toml",
+            &own.replace(
+                "[bearing.left]\n",
+                &format!("inner_at = \"0 mm\"\n[bearing.mid]\nballs = 9\n[bearing.left]\n"),
+            ),
+        ),
+        ("bare.toml", "base = \"empty.toml\"\nwithout = \"base\"\n"),
+        ("bodies.toml", "base = \"base.toml\"\nwithout = \"body\"\n"),
+    ]);
+    assert!(read(&root, "empty.toml").unwrap() == read(&root, "long.toml").unwrap());
+    for name in ["list.toml", "none.toml"] {
+        let said = wrong(&root, name);
+        assert!(
+            said.contains(
+                "body.beam.load: refused: it changes nothing, since [body.shaft] say it themselves"
+            ),
+            "{said}"
+        );
+    }
+    // It is heard by the bearing that is new; its place among the others is the order's.
+    let places = |name: &str| {
+        let Subject::Assembly(scene) = read(&root, name).unwrap() else { panic!("bearings") };
+        let mut all: Vec<_> =
+            scene.bearings.iter().map(|of| format!("{:?} {:?}", of.name, of.carriers[0])).collect();
+        all.sort();
+        all
+    };
+    assert_eq!(places("mid.toml"), places("mid_long.toml"));
+    assert!(wrong(&root, "bare.toml").contains("says nothing of \"base\""));
+    // With its names: nothing is left for the bearings to sit on, and they are held where they are.
+    let Subject::Assembly(scene) = read(&root, "bodies.toml").unwrap() else { panic!("bearings") };
+    assert!(scene.bodies.is_empty());
 }
 
 /// What a scene leaves out of its base, by key, table, list, name and assumption.
@@ -277,7 +336,7 @@ fn errors_name_the_file_that_is_wrong() {
         ("folder.toml", "folder.toml:1:8: base: refused: ".into()),
         ("number.toml", "number.toml:1:8: base: expected ".into()),
         ("round.toml", "round.toml:1:8: base: refused: this is base number 9, and up to 8 are read. Hint: do they go round in a circle?".into()),
-        ("unheard.toml", "unheard.toml:3:24: bearing.clearance.radial: refused: it changes nothing, since [bearing.left], [bearing.right] of the base say it \
+        ("unheard.toml", "unheard.toml:3:24: bearing.clearance.radial: refused: it changes nothing, since [bearing.left], [bearing.right] say it \
                           themselves. Hint: write bearing.left.clearance.radial".into()),
         ("empty.toml", "nothing.toml: the file is empty".into()),
         ("without.toml", "without.toml:2:11: without: refused: base.toml says nothing of \"solid.msh\"".into()),
@@ -287,5 +346,7 @@ fn errors_name_the_file_that_is_wrong() {
         assert!(said.starts_with(&expected), "{name}: {said}");
     }
     let document = Document::read_file(&root.path().join("base.toml"));
-    assert!(document.unwrap().set("base", "other.toml").is_err());
+    let mut document = document.unwrap();
+    assert!(document.set("base", "other.toml").is_err());
+    assert!(document.set("without", "traction").is_err());
 }

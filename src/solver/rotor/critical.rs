@@ -22,6 +22,11 @@ impl RotorModel {
     /// A shaft none of whose motions is held, or one that nothing holds and whose inertia about its axis is that across it, which whirls
     /// once a turn at every speed.
     pub fn critical_speeds(&self) -> Result<Vec<Critical>, RotorError> {
+        Ok(self.criticals()?.0)
+    }
+
+    /// The same, and how many more there would be if rigid motions were held, however weakly: these would be the slowest.
+    pub(super) fn criticals(&self) -> Result<(Vec<Critical>, usize), RotorError> {
         let rigid = self.natural.iter().filter(|&&natural| natural == 0.0).count();
         let modes = self.natural.len();
         let held = modes - rigid;
@@ -33,11 +38,13 @@ impl RotorModel {
         });
         let (across, own) = (turning.view((0, rigid), (rigid, held)), rigid..modes);
         let mut follows = turning.view((0, 0), (rigid, rigid)).into_owned();
+        let mut loose = 0;
         if rigid > 0 {
             let values = follows.clone().symmetric_eigenvalues();
             if values.iter().any(|value| value.abs() <= SPHERE) {
                 return Err(RotorError::Sphere);
             }
+            loose = values.iter().filter(|value| **value > 0.0).count();
             follows = -follows.lu().solve(&across).ok_or(RotorError::Sphere)?;
         } else {
             follows = DMatrix::zeros(0, held);
@@ -65,7 +72,7 @@ impl RotorModel {
             found.push(Critical { speed, whirl: self.motion(Complex::new(0.0, speed), modal) });
         }
         found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
-        Ok(found)
+        Ok((found, loose))
     }
 
     /// The speed near `critical` at which the motion's damped frequency is that of the spin, rad/s, to 1e-12 of it.

@@ -234,26 +234,17 @@ impl RotorModel {
     /// forward whirl once a turn has in their axes, that of the speed where they stand still and none where they turn at the speed.
     ///
     /// # Errors
-    /// As [`RotorModel::of`] and [`RotorModel::critical_speeds`].
-    pub fn critical_speeds_of(
-        vibrations: &Vibrations,
-        modes: usize,
-        stations: &[f64],
-        sections: Option<&DMatrix<f64>>,
-        limit: f64,
-    ) -> Result<Vec<Critical>, RotorError> {
+    /// As [`RotorModel::critical_speeds`].
+    pub fn critical_speeds_up_to(&self, limit: f64) -> Result<Vec<Critical>, RotorError> {
         let at = |speed: f64| {
             let seen = |of: &Relaxing| match of.spin {
                 1.0 => 0.0,
                 spin => (1.0 - spin).abs() * speed,
             };
-            let mut stiff = vibrations.stiffened(seen);
-            // Without damping, whose answers among the shapes are more at one stiffness than at another: speeds go by their numbers.
-            stiff.damping.fill(0.0);
-            RotorModel::of(&stiff, modes, stations.to_vec(), sections)?.critical_speeds()
+            self.stiffened(seen)?.criticals()
         };
-        let stiffest = at(f64::INFINITY)?;
-        if vibrations.relaxing.iter().all(|of| of.spin == 1.0) {
+        let (stiffest, loose) = at(f64::INFINITY)?;
+        if self.relaxing.iter().all(|of| of.spin == 1.0) {
             return Ok(stiffest);
         }
         // A speed that springs give which have relaxed less than at the limit is not below it.
@@ -261,16 +252,17 @@ impl RotorModel {
         let mut found = Vec::new();
         for (number, critical) in stiffest.iter().enumerate() {
             // What has come to be held by nothing is no longer counted.
-            let of = |all: &[Critical]| (number + all.len()).checked_sub(stiffest.len());
-            if of(&limited).is_some_and(|own| limited[own].speed > limit) {
+            let of = |now: &(Vec<Critical>, usize)| (number + loose).checked_sub(now.1);
+            let own = of(&limited).and_then(|own| limited.0.get(own));
+            if own.is_some_and(|own| own.speed > limit) {
                 break;
             }
             let mut last = critical.clone();
             let value = |square: f64| -> Result<f64, RotorError> {
                 let mut all = at(square.sqrt())?;
-                Ok(match of(&all) {
+                Ok(match of(&all).filter(|own| *own < all.0.len()) {
                     Some(own) => {
-                        last = all.swap_remove(own);
+                        last = all.0.swap_remove(own);
                         last.speed * last.speed
                     }
                     None => 0.0,
@@ -282,6 +274,37 @@ impl RotorModel {
         }
         found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok(found)
+    }
+
+    /// With what the springs that relax store of an oscillation, each at its own frequency (rad/s or infinite), and nothing that relaxes: the
+    /// same shapes in other combinations.
+    fn stiffened(&self, frequency: impl Fn(&Relaxing) -> f64) -> Result<RotorModel, RotorError> {
+        let mut stiffness = self.stiffness.clone();
+        self.relaxing.iter().for_each(|of| stiffness += of.storage(frequency(of)));
+        let even = (&stiffness + stiffness.transpose()) * 0.5;
+        let count = even.nrows();
+        let mass = DMatrix::identity(count, count);
+        // Of springs that have not relaxed, so that nothing comes to be rigid by comparison.
+        let held = self.natural.iter().copied().find(|&natural| natural > 0.0).unwrap_or(1.0);
+        let (turned, squares) =
+            lowest(&mass, &even, 1e-4 * held * held, count).ok_or(RotorError::Unstable)?;
+        let over = |matrix: &DMatrix<f64>| turned.tr_mul(&(matrix * &turned));
+        let noise = (RIGID * held * held).max(f64::EPSILON * even.amax());
+        if squares.iter().any(|&square| square < -10.0 * noise) {
+            return Err(RotorError::Unstable);
+        }
+        let natural = squares.iter().map(|&s| if s <= noise { 0.0 } else { s.sqrt() });
+        Ok(RotorModel {
+            stations: self.stations.clone(),
+            basis: &self.basis * &turned,
+            natural: natural.collect(),
+            damping: over(&self.damping),
+            gyroscopic: over(&self.gyroscopic),
+            stiffness: over(&stiffness),
+            circulating: over(&self.circulating),
+            relaxing: Vec::new(),
+            quarter_turn: over(&self.quarter_turn),
+        })
     }
 
     /// Whether nothing brings back a motion across the axis.
