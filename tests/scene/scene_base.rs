@@ -198,7 +198,7 @@ fn lists_of_names_over_those_of_a_base() {
             "mid_long.toml",
             &own.replace(
                 "[bearing.left]\n",
-                &format!("inner_at = \"0 mm\"\n[bearing.mid]\nballs = 9\n[bearing.left]\n"),
+                "inner_at = \"0 mm\"\n[bearing.mid]\nballs = 9\n[bearing.left]\n",
             ),
         ),
         ("bare.toml", "base = \"empty.toml\"\nwithout = \"base\"\n"),
