@@ -187,7 +187,7 @@ Axes: X axial, Y lateral, Z up. Ball azimuths run from +Y towards +Z.
 `base = \"rotor.toml\"` at the top makes a scene of what that file says with its own keys laid over it: a study of six fits is one scene and six short ones.
 Keys go one by one, those that exclude each other in place of each other (a diametral clearance of the scene for a radial one of its base); lists of tables are taken
 whole, and an empty one, `load = []`, takes the base's away; tables with names add to those of the same name; assumptions go by their names; a `[sweep]` stands in place of the base's. What else the scene has not it names:
-`without = \"solid.mesh, sensor.top\"` leaves a table and a sensor of the base out before the scene's own keys are laid over it. The base's name
+`without = \"solid.mesh, sensor.top\"` leaves a table and a sensor of the base out (a table such as `body` with those that have names) before the scene's own keys are laid over it. The base's name
 counts from the scene's folder, a mesh from that of the file that names it. A base may have a base, up to eight in all, and need not be complete. Keys without a name do not reach names of the
 base that say their own, as anywhere; where they reach nothing they are refused. Errors name the file that is wrong; packs hold bases below the scene's folder.
 
