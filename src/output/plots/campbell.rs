@@ -23,9 +23,10 @@ pub fn campbell(title: &str, of: &Campbell, critical: &[f64]) -> Result<String, 
         curves.push(Curve::new(format!("{} {turns}", number + 1), points));
     }
     let last = of.speeds.last().copied().unwrap_or(0.0);
-    let end = last.min(highest * TAU);
-    curves.push(Curve::new("once a turn", vec![[0.0, 0.0], [rpm(end), end / TAU]]));
-    let meet = critical.iter().filter(|speed| speed.abs() <= end.abs());
+    let end = last.abs().min(highest * TAU);
+    let turn = [rpm(end.copysign(last)), end / TAU];
+    curves.push(Curve::new("once a turn", vec![[0.0, 0.0], turn]));
+    let meet = critical.iter().filter(|speed| speed.abs() <= end);
     let meet: Vec<[f64; 2]> =
         meet.map(|speed| [rpm(speed.copysign(last)), speed.abs() / TAU]).collect();
     if !meet.is_empty() {
