@@ -108,73 +108,88 @@ impl Plain {
             elements,
         };
         // What it is strained by at the start has relaxed.
-        plain.before =
-            plain.elements.iter().map(|of| plain.isochoric(&plain.gradient(of)).0).collect();
+        let strained = plain.elements.iter().map(|of| gradient(of, &plain.nodes));
+        plain.before = strained.map(|f| isochoric(&f, &plain.slope, network.modulus).0).collect();
         plain
-    }
-
-    /// DEV S without the Maxwell elements, J, C⁻¹.
-    fn isochoric(&self, f: &Matrix3<f64>) -> (Matrix3<f64>, f64, Matrix3<f64>) {
-        let right = f.transpose() * f;
-        let inverse = right.try_inverse().expect("a sound element");
-        let j = f.determinant();
-        let isochoric = 1.0 / (j * j).cbrt();
-        let invariant = isochoric * right.trace();
-        let [p, q, r, s, t] = self.slope;
-        let slope = p + invariant * (q + invariant * (r + invariant * (s + invariant * t)));
-        let own = (Matrix3::identity() - inverse * (right.trace() / 3.0))
-            * (2.0 * self.moduli[0] * slope * isochoric);
-        (own, j, inverse)
-    }
-
-    fn gradient(&self, (gradients, _, nodes): &PlainElement) -> Matrix3<f64> {
-        let [a, b, c, d] = nodes.map(|n| self.nodes.displacement[n]);
-        Matrix3::identity() + Matrix3x4::from_columns(&[a, b, c, d]) * gradients.transpose()
     }
 
     /// J − 1 of every node: changes of volume there over its volume.
     fn dilatations(&mut self, volumes: &[f64]) -> Vec<f64> {
         let mut changes = vec![0.0; volumes.len()];
-        for index in 0..self.elements.len() {
-            let f = self.gradient(&self.elements[index]);
-            let (_, volume, nodes) = &self.elements[index];
+        for ((_, volume, nodes), f) in self.elements.iter().zip(&self.gradient) {
             let change = 0.25 * volume * (f.determinant() - 1.0);
             nodes.iter().for_each(|n| changes[*n] += change);
-            self.gradient[index] = f;
         }
         changes.iter().zip(volumes).map(|(change, volume)| change / volume).collect()
     }
 
     fn step(&mut self) {
-        let bulk = self.moduli[1];
-        let volumes = self.around.take();
-        let dilatations = volumes.as_ref().map(|volumes| self.dilatations(volumes));
-        self.around = volumes;
-        for (index, element) in self.elements.iter().enumerate() {
-            let (gradients, volume, nodes) = element;
-            let f = match dilatations {
-                Some(_) => self.gradient[index],
-                None => self.gradient(element),
-            };
-            let (own, j, inverse) = self.isochoric(&f);
-            let change = own - self.before[index];
-            self.before[index] = own;
-            let dilatation = match &dilatations {
-                Some(of_nodes) => 0.25 * nodes.iter().map(|n| of_nodes[*n]).sum::<f64>(),
-                None => j - 1.0,
-            };
-            let mut stress = own + inverse * (bulk * j * dilatation);
-            for (h, [decay, gain]) in self.history[index].iter_mut().zip(&self.factors) {
-                *h = *h * *decay + change * *gain;
-                stress += *h;
+        match self.around.take() {
+            None => {
+                for index in 0..self.elements.len() {
+                    let f = gradient(&self.elements[index], &self.nodes);
+                    self.element(index, &f, None);
+                }
             }
-            let forces = f * stress * gradients * -*volume;
-            for (node, force) in nodes.iter().zip(forces.column_iter()) {
-                self.nodes.force[*node] += force;
+            Some(volumes) => {
+                for (element, f) in self.elements.iter().zip(&mut self.gradient) {
+                    *f = gradient(element, &self.nodes);
+                }
+                let of_nodes = self.dilatations(&volumes);
+                for index in 0..self.elements.len() {
+                    let sum: f64 = self.elements[index].2.iter().map(|n| of_nodes[*n]).sum();
+                    let f = self.gradient[index];
+                    self.element(index, &f, Some(0.25 * sum));
+                }
+                self.around = Some(volumes);
             }
         }
         self.nodes.step();
     }
+
+    /// Adds the forces of one element; its own J − 1 unless another is given.
+    #[inline(always)]
+    fn element(&mut self, index: usize, f: &Matrix3<f64>, dilatation: Option<f64>) {
+        let (own, j, inverse) = isochoric(f, &self.slope, self.moduli[0]);
+        let change = own - self.before[index];
+        self.before[index] = own;
+        let dilatation = dilatation.unwrap_or(j - 1.0);
+        let mut stress = own + inverse * (self.moduli[1] * j * dilatation);
+        for (h, [decay, gain]) in self.history[index].iter_mut().zip(&self.factors) {
+            *h = *h * *decay + change * *gain;
+            stress += *h;
+        }
+        let (gradients, volume, nodes) = &self.elements[index];
+        let forces = f * stress * gradients * -*volume;
+        for (node, force) in nodes.iter().zip(forces.column_iter()) {
+            self.nodes.force[*node] += force;
+        }
+    }
+}
+
+#[inline(always)]
+fn gradient((gradients, _, nodes): &PlainElement, of: &PlainNodes) -> Matrix3<f64> {
+    let [a, b, c, d] = nodes.map(|n| of.displacement[n]);
+    Matrix3::identity() + Matrix3x4::from_columns(&[a, b, c, d]) * gradients.transpose()
+}
+
+/// DEV S without the Maxwell elements, J, C⁻¹.
+#[inline(always)]
+fn isochoric(
+    f: &Matrix3<f64>,
+    slope: &[f64; 5],
+    modulus: f64,
+) -> (Matrix3<f64>, f64, Matrix3<f64>) {
+    let right = f.transpose() * f;
+    let inverse = right.try_inverse().expect("a sound element");
+    let j = f.determinant();
+    let isochoric = 1.0 / (j * j).cbrt();
+    let invariant = isochoric * right.trace();
+    let [p, q, r, s, t] = slope;
+    let slope = p + invariant * (q + invariant * (r + invariant * (s + invariant * t)));
+    let own = (Matrix3::identity() - inverse * (right.trace() / 3.0))
+        * (2.0 * modulus * slope * isochoric);
+    (own, j, inverse)
 }
 
 /// Largest difference of a displacement after twenty steps of both, over the largest.
