@@ -291,7 +291,7 @@ fn beyond_shapes(assembly: &Assembly, found: impl Iterator<Item = f64>) -> Optio
     (beyond > 0).then(|| {
         format!(
             "{beyond} of the modes, those above {limit:.0} Hz, reach beyond the natural shapes of {}: what is left of it there are shapes that \
-             answer loads, which swing too fast (from half of that frequency on by up to 0.5 %); body.NAME.beam.below has more natural ones",
+             answer loads, which swing too fast (from half of that frequency on by 0.2 to 0.4 % where it was measured); body.NAME.beam.below has more natural ones",
             assembly.bodies[body].name
         )
     })

@@ -130,9 +130,8 @@ impl RotorModel {
             false => *value,
         };
         let oscillates = |value: &Complex<f64>| value.im > ROUNDING * least;
-        let mut values: Vec<Complex<f64>> =
-            found.iter().map(|found| Complex::new(found.re, found.im)).collect();
-        values = values.iter().map(settled).filter(oscillates).collect();
+        let found = found.iter().map(|found| settled(&Complex::new(found.re, found.im)));
+        let mut values: Vec<Complex<f64>> = found.filter(oscillates).collect();
         values.sort_by(|a, b| a.im.total_cmp(&b.im));
         Ok(values)
     }
