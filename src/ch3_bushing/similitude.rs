@@ -41,23 +41,3 @@ impl Scale {
         self.force(of.dynamic_stiffness) / self.displacement(1.0)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A bushing twice as large of twice the modulus: four times the stiffness, the same groups.
-    #[test]
-    fn like_bushings_have_like_groups() {
-        let small = Scale { modulus: 1e6, diameter: 0.04, length: 0.06, thickness: 0.02 };
-        let large = Scale { modulus: 2e6, diameter: 0.08, length: 0.12, thickness: 0.04 };
-        let of = |k| Hysteresis { dynamic_stiffness: k, damping_ratio: 0.1 };
-        assert_eq!(small.diameter_ratio(), large.diameter_ratio());
-        assert_eq!(small.length_ratio(), large.length_ratio());
-        let [a, b] = [small.dynamic_stiffness(&of(1e6)), large.dynamic_stiffness(&of(4e6))];
-        assert!((a / b - 1.0).abs() <= 1e-15);
-        // 1e6 N/m · 0.02 m/(1e6 Pa · 0.06 m · 0.04 m).
-        assert!((a - 1e6 * 0.02 / (1e6 * 0.06 * 0.04)).abs() <= 1e-12 * a);
-        assert!((small.force(2400.0) - 1.0).abs() <= 1e-15);
-    }
-}

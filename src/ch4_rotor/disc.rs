@@ -40,28 +40,3 @@ pub fn unbalance_force(unbalance: f64, angle: f64, spin: f64, spin_up: f64) -> V
     let [c, s] = [libm::cos(angle), libm::sin(angle)];
     (Vector2::new(c, s) * (spin * spin) - Vector2::new(-s, c) * spin_up) * unbalance
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A disc of 0.1 m and 20 mm, a thin hoop, and the unbalance against the acceleration of its place by differences.
-    #[test]
-    fn rings_and_unbalance() {
-        let disc = Inertia::of_ring(0.1, 0.0, 0.02, 7850.0);
-        let mass = 7850.0 * PI * 0.0025 * 0.02;
-        assert!((disc.mass / mass - 1.0).abs() <= 1e-14);
-        assert!((disc.axial / (mass * 0.0025 / 2.0) - 1.0).abs() <= 1e-14);
-        assert!((disc.transverse / (mass * (0.0025 / 4.0 + 0.0004 / 12.0)) - 1.0).abs() <= 1e-14);
-        let hoop = Inertia::of_ring(1.0, 0.999, 1e-9, 1.0);
-        assert!((hoop.axial / (2.0 * hoop.transverse) - 1.0).abs() <= 1e-12);
-
-        let [speed, gain, t, h] = [30.0, 200.0, 0.4, 1e-4];
-        let turn = |t: f64| 0.3 + speed * t + 0.5 * gain * t * t;
-        let place = |t: f64| Vector2::new(turn(t).cos(), turn(t).sin());
-        let acceleration = (place(t + h) - place(t) * 2.0 + place(t - h)) / (h * h);
-        let force = unbalance_force(1e-3, turn(t), speed + gain * t, gain);
-        // Second differences miss by h²/12 of the fourth derivative, (110 rad/s)⁴: 1e-5 of ω².
-        assert!((force + acceleration * 1e-3).norm() <= 2e-5 * force.norm());
-    }
-}

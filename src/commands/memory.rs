@@ -1,6 +1,7 @@
 //! How much memory a command may take, and what is said of it before and while it works.
 
 use super::say;
+use bearing_dynamics::output::amounts::{duration, size};
 use bearing_dynamics::solver::solid::tangent::Unknowns;
 use bearing_dynamics::solver::sparse::{Cost, Progress, Speed, TooLarge};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -98,22 +99,6 @@ pub fn text(cost: &Cost) -> String {
     )
 }
 
-fn size(bytes: f64) -> String {
-    match bytes {
-        bytes if bytes < 1e9 => format!("{:.0} MB", 1e-6 * bytes),
-        bytes => format!("{:.2} GB", 1e-9 * bytes),
-    }
-}
-
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => "a second or less".into(),
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
 /// Refuses or announces a long piece of work; whether it is long.
 pub fn announced(cost: &Cost, other: &'static str) -> Result<bool, Box<dyn Error>> {
     refuse_beyond(cost, other)?;
@@ -208,23 +193,4 @@ fn draw(cost: &Cost, progress: &Progress, done: &AtomicBool) {
         std::thread::sleep(LOOK);
     }
     bar.finish_and_clear();
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_and_sizes_are_told_in_units_that_suit_them() {
-        for (seconds, told) in [
-            (0.3, "a second or less"),
-            (42.4, "42 s"),
-            (600.0, "10 min"),
-            (7140.0, "119 min"),
-            (9000.0, "2.5 h"),
-        ] {
-            assert_eq!(duration(seconds), told);
-        }
-        assert_eq!([15.2e6, 999.4e6, 2.5e9].map(size), ["15 MB", "999 MB", "2.50 GB"]);
-    }
 }

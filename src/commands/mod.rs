@@ -196,15 +196,3 @@ pub fn results_folder(scene: &Path, given: &Option<PathBuf>) -> PathBuf {
         Path::new("results").join(name)
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn changes_are_written_as_they_were_given() {
-        let set = vec!["inner_race.z.load=-700 N".into(), "bearing.balls=9".into()];
-        let again = Changes { set }.again();
-        assert_eq!(again, " --set \"inner_race.z.load=-700 N\" --set \"bearing.balls=9\"");
-    }
-}

@@ -247,7 +247,7 @@ pub fn lumped_mass(nodes: &[Vec3; 10], density: f64) -> [f64; 10] {
 }
 
 /// Keast's fifteen points of degree 5 (Keast 1986, rule 6), barycentric; weights sum to 1.
-fn mass_rule() -> [([f64; 4], f64); 15] {
+pub fn mass_rule() -> [([f64; 4], f64); 15] {
     let root = 15f64.sqrt();
     let mut rule = [([0.25; 4], 16.0 / 135.0); 15];
     let mut at = 1;
@@ -271,63 +271,4 @@ fn mass_rule() -> [([f64; 4], f64); 15] {
         at += 1;
     }
     rule
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// ∫ of a monomial over a tetrahedron of unit volume: 6·a!b!c!d!/(a+b+c+d+3)!.
-    fn exact(powers: [u32; 4]) -> f64 {
-        let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
-        6.0 * powers.iter().map(|&p| factorial(p)).product::<f64>()
-            / factorial(powers.iter().sum::<u32>() + 3)
-    }
-
-    #[test]
-    fn the_rules_integrate_what_they_promise() {
-        type Rule = Vec<([f64; 4], f64)>;
-        let rules: [(u32, Rule); 2] = [
-            (2, (0..POINTS).map(|point| (stiffness_rule(point), 0.25)).collect()),
-            (5, mass_rule().to_vec()),
-        ];
-        for (degree, rule) in rules {
-            for a in 0..=degree {
-                for b in 0..=degree - a {
-                    for c in 0..=degree - a - b {
-                        let powers = [a, b, c, 0];
-                        let sum: f64 = rule
-                            .iter()
-                            .map(|(l, w)| {
-                                w * (0..4).map(|i| l[i].powi(powers[i] as i32)).product::<f64>()
-                            })
-                            .sum();
-                        // Fifteen terms of at most 1, rounding only.
-                        assert!((sum - exact(powers)).abs() <= 1e-14, "{powers:?}");
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn lumped_masses_of_a_straight_element() {
-        let corners = [[0.0; 3], [1.0, 0.1, 0.0], [0.2, 1.3, 0.0], [0.0, 0.3, 0.9]];
-        let nodes: [Vec3; 10] = std::array::from_fn(|i| {
-            if i < 4 {
-                corners[i]
-            } else {
-                let [a, b] = EDGES[i - 4];
-                std::array::from_fn(|k| 0.5 * (corners[a][k] + corners[b][k]))
-            }
-        });
-        let masses = lumped_mass(&nodes, 6.0);
-        let total: f64 = masses.iter().sum();
-        let volume = Tet10::new(&nodes).unwrap().volume();
-        assert!((total - 6.0 * volume).abs() <= 1e-14 * total);
-        for (i, mass) in masses.iter().enumerate() {
-            let share = if i < 4 { 1.0 / 36.0 } else { 4.0 / 27.0 };
-            assert!((mass / total - share).abs() <= 1e-14, "{i}: {}", mass / total);
-        }
-    }
 }

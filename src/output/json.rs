@@ -41,7 +41,7 @@ pub fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
 
 /// How many values the text has at most: one, and one more for each comma and opening bracket outside
 /// of strings.
-fn values(bytes: &[u8]) -> usize {
+pub fn values(bytes: &[u8]) -> usize {
     let (mut count, mut in_string, mut escaped) = (1, false, false);
     for byte in bytes {
         match byte {
@@ -53,17 +53,4 @@ fn values(bytes: &[u8]) -> usize {
         }
     }
     count
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_counted_outside_of_strings() {
-        assert_eq!(values(br#"{"a,[{\",": [1, 2, {}]}"#), 1 + 1 + 1 + 2 + 1);
-        let list = |count: usize| format!("[{}0]", "0,".repeat(count - 1));
-        assert!(parse(list(MOST_VALUES - 1).as_bytes()).is_ok());
-        assert!(matches!(parse(list(MOST_VALUES).as_bytes()), Err(JsonError::TooMany)));
-    }
 }

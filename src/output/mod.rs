@@ -11,7 +11,7 @@
 //! - [`journal`]: how the file of a state is read and written
 //! - [`mod@spectrum`]: amplitude spectra of time series
 //! - [`compare`]: where does a candidate depart from a reference, and by how much
-//! - [`visible`]: texts of files made fit for a terminal
+//! - [`visible`]: texts of files made fit for a terminal; [`amounts`]: memory and time as people say them
 //! - [`pack`]: a scene with its expected results, tolerances and hashes
 //!
 //! # The folder of a run
@@ -27,6 +27,7 @@
 //! | `state.json`, `state-N.npy` | what the run goes on from |
 //!
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
+pub mod amounts;
 pub mod assembly_results;
 pub mod atomic;
 pub mod bushing_reach;

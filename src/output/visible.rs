@@ -33,19 +33,3 @@ fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     }
     Cow::Owned(shown)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nothing_that_a_terminal_obeys_is_left() {
-        let title = "\u{1b}[2J\u{9b}31m\r\u{7f}\u{202e}\nµm\t²";
-        assert_eq!(visible(title), "\\u001b[2J\\u009b31m\\u000d\\u007f\\u202e\nµm\t²");
-        assert_eq!(visible_line("a\nb\tc"), "a\\u000ab\\u0009c");
-        assert!(matches!(visible("plain\n"), Cow::Borrowed(_)));
-        let json = serde_json::Value::from(title).to_string();
-        let read: String = serde_json::from_str(&visible(&json)).unwrap();
-        assert_eq!(read, title);
-    }
-}

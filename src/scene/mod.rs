@@ -56,7 +56,7 @@ mod resolve_rubber;
 mod resolve_sensor;
 mod resolve_shaft;
 mod resolve_solid;
-mod resolve_solid_mesh;
+pub mod resolve_solid_mesh;
 mod resolve_spring;
 pub mod resolved;
 pub mod rubber_problem;

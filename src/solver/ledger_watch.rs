@@ -38,34 +38,3 @@ impl LedgerWatch {
         residual.abs() <= (limit * self.turned_over).max(NOTHING)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Rows on end that are seen until a run ends, at most a hundred.
-    fn rows_seen(residual: f64, turned_over: f64) -> usize {
-        let mut watch = LedgerWatch::default();
-        (0..100).take_while(|_| watch.see(residual, turned_over, 0.2)).count()
-    }
-
-    /// Looks that are open now and then end no run, those on end do.
-    #[test]
-    fn a_single_blow_ends_no_run() {
-        let mut watch = LedgerWatch::default();
-        for round in 0..20 {
-            let open = (1..MOST_OPEN).all(|_| watch.see(1.0, 2.0, 0.2));
-            assert!(open && watch.see(0.1, 2.0, 0.2), "{round}");
-        }
-        assert_eq!((watch.largest_residual, watch.turned_over), (1.0, 2.0));
-    }
-
-    /// As of a rotor at rest in elements, whose load comes later: 1.6e-23 J of 3.3e-23 J.
-    #[test]
-    fn rounding_of_a_system_at_rest_ends_no_run() {
-        assert_eq!(rows_seen(1.6e-23, 3.3e-23), 100);
-        assert_eq!(rows_seen(1.6e-9, 3.3e-9), MOST_OPEN as usize - 1);
-        assert_eq!(rows_seen(1.6e-23, 0.0), 100);
-        assert_eq!(rows_seen(f64::NAN, 1.0), 0);
-    }
-}

@@ -58,7 +58,7 @@ impl InnerRacePosition {
     }
 
     /// The same race, seen from the frame in which its present one stands at `axes`.
-    pub(super) fn seen_from_parent_of(mut self, axes: &Pose) -> Self {
+    pub fn seen_from_parent_of(mut self, axes: &Pose) -> Self {
         self.centre = axes.point_to_parent(&self.centre);
         let turned = [
             &mut self.axis,

@@ -10,9 +10,9 @@ use super::statics::StaticsError;
 use nalgebra::{Matrix3, SMatrix, Vector3, Vector4};
 
 /// Where a race is in its bore, and what the coordinates of its body do to that.
-pub(super) struct SeatPlace {
+pub struct SeatPlace {
     /// y, z (m), tilts about Y and Z (rad) from the nominal pose, in its axes.
-    pub(super) pose: [f64; 4],
+    pub pose: [f64; 4],
     /// By how much a unit of each coordinate of the body changes them.
     by: SMatrix<f64, 4, 5>,
     /// Where the body's coordinates are not those of the seat.
@@ -32,7 +32,7 @@ impl SeatPlace {
     }
 
     /// Of a race given in the nominal axes; those of its body's coordinates are turned by `axes` against them.
-    pub(super) fn new(race: InnerRacePosition, mount: &Mount, axes: &Matrix3<f64>) -> SeatPlace {
+    pub fn new(race: InnerRacePosition, mount: &Mount, axes: &Matrix3<f64>) -> SeatPlace {
         let (centre, a) = (&race.centre, &race.axis);
         let tilts = [libm::atan2(-a.z, a.x), libm::asin(a.y.clamp(-1.0, 1.0))];
         let motion = motion_of_race(&race, mount, axes);
@@ -48,13 +48,13 @@ impl SeatPlace {
     }
 
     /// A load along the four coordinates of the seat, along those of the body.
-    fn load(&self, load: &Vector4<f64>) -> Five {
+    pub fn load(&self, load: &Vector4<f64>) -> Five {
         self.by.transpose() * load
     }
 
     /// Stiffness over the coordinates of the body, that of the seat given; its load adds what the curvature of the
     /// coordinates makes of it.
-    fn stiffness(
+    pub fn stiffness(
         &self,
         stiffness: &SMatrix<f64, 4, 4>,
         load: &Vector4<f64>,
@@ -110,60 +110,4 @@ pub(super) fn add_seat(
     let mut block = here.stiffness.fixed_view_mut::<5, 5>(first, first);
     block += place.stiffness(&answer.stiffness, &answer.load, &seat.mount);
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kinematics::Pose;
-    use nalgebra::UnitQuaternion;
-    use std::f64::consts::PI;
-
-    /// Over the pose of a race in its bore, of numbers with nothing of symmetry.
-    fn quadratic(pose: [f64; 4]) -> (f64, Vector4<f64>, SMatrix<f64, 4, 4>) {
-        let stiffness = SMatrix::<f64, 4, 4>::from_fn(|i, j| {
-            let (low, high) = (i.min(j) as f64, i.max(j) as f64);
-            if i == j { 3.0 + low } else { 0.4 * low - 0.3 * high }
-        });
-        let gone = Vector4::from(pose) - Vector4::new(0.3, -0.2, 0.5, -0.6);
-        (0.5 * gone.dot(&(stiffness * gone)), stiffness * gone, stiffness)
-    }
-
-    /// Turned far more than a bore leaves room for, so that every term counts.
-    #[test]
-    fn load_and_stiffness_over_a_bodys_coordinates_are_slopes_of_the_energy() {
-        let lean = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, 0.3, -0.2));
-        let over = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, PI));
-        for (along, reversed) in [(0.0, false), (0.2, false), (-0.3, true)] {
-            let orientation = if reversed { over * lean } else { lean };
-            let axes = Pose { position: Vector3::new(0.01, -0.02, 0.03), orientation };
-            let turn = orientation.to_rotation_matrix().into_inner();
-            let mount = Mount { body: 0, along, reversed };
-            let place = |at: &Five| {
-                let race = InnerRacePosition::mounted(at, &mount, &Vector3::zeros());
-                SeatPlace::new(race.seen_from_parent_of(&axes), &mount, &turn)
-            };
-            let here = Five::from([0.05, -0.1, 0.15, 0.3, -0.4]);
-            let found = place(&here);
-            let (_, load, stiffness) = quadratic(found.pose);
-            let (own_load, own) = (found.load(&load), found.stiffness(&stiffness, &load, &mount));
-            for i in 0..5 {
-                let step = 1e-6;
-                let moved = |sign: f64| {
-                    let mut at = here;
-                    at[i] += sign * step;
-                    let there = place(&at);
-                    let (energy, load, _) = quadratic(there.pose);
-                    (energy, there.load(&load))
-                };
-                let (high, low) = (moved(1.0), moved(-1.0));
-                // Rounding of numbers near one over the step, and its square.
-                let slope = (high.0 - low.0) / (2.0 * step);
-                assert!((slope - own_load[i]).abs() <= 1e-8, "{along} {i}: {slope} {own_load}");
-                let slopes = (high.1 - low.1) / (2.0 * step);
-                let apart = (slopes - own.column(i)).amax();
-                assert!(apart <= 1e-8, "{along} {i}: {slopes} {own}");
-            }
-        }
-    }
 }

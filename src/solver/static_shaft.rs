@@ -11,8 +11,8 @@ use crate::kinematics::euler::quaternion;
 use nalgebra::{DMatrix, DVector, Dyn, Matrix2, Matrix3, OMatrix, U5, Vector3};
 
 /// One section where its shaft is now.
-pub(super) struct SectionPlace {
-    pub(super) coordinates: Five,
+pub struct SectionPlace {
+    pub coordinates: Five,
     axis: Vector3<f64>,
     /// From the body's centre to the section's.
     arm: Vector3<f64>,
@@ -33,7 +33,7 @@ fn along(shape: &[f64], amplitudes: &[f64]) -> f64 {
 
 impl SectionPlace {
     /// On a body at these coordinates, bent by these amplitudes.
-    pub(super) fn new(of: &StaticSection, body: &Five, amplitudes: &[f64]) -> SectionPlace {
+    pub fn new(of: &StaticSection, body: &Five, amplitudes: &[f64]) -> SectionPlace {
         let section = &of.section;
         let (a, rest) = amplitudes.split_at(section.deflection.len());
         let (b, c) = rest.split_at(section.deflection.len());
@@ -74,7 +74,7 @@ impl SectionPlace {
     }
 
     /// Slopes of centre and axis over the body's five coordinates and the amplitudes.
-    fn slopes(&self, of: &StaticSection) -> [Vec<Vector3<f64>>; 2] {
+    pub fn slopes(&self, of: &StaticSection) -> [Vec<Vector3<f64>>; 2] {
         let section = &of.section;
         let [e1, e2, e3] = [0, 1, 2].map(|i| self.turn.column(i).into_owned());
         let [sine, slope, towards_2, towards_3] = self.bent;
@@ -105,7 +105,10 @@ impl SectionPlace {
     }
 
     /// ∂s/∂q over the same, for slopes of centre and axis, and the axis's own over the section's tilts.
-    fn motion(&self, [centre, axis]: &[Vec<Vector3<f64>>; 2]) -> (OMatrix<f64, U5, Dyn>, Tilts) {
+    pub fn motion(
+        &self,
+        [centre, axis]: &[Vec<Vector3<f64>>; 2],
+    ) -> (OMatrix<f64, U5, Dyn>, Tilts) {
         let ([by_xi, by_lambda], [xi_xi, xi_lambda, _]) =
             InnerRacePosition::new(&self.coordinates).turning();
         let per = [by_xi / by_xi.norm_squared(), by_lambda / by_lambda.norm_squared()];
@@ -117,7 +120,7 @@ impl SectionPlace {
     }
 
     /// What the curvature of s(q) makes of the slope `gradient` over s.
-    fn curvature(
+    pub fn curvature(
         &self,
         of: &StaticSection,
         gradient: &Five,
@@ -174,7 +177,7 @@ impl SectionPlace {
 }
 
 /// Of a section's axis over its own tilts: reciprocal slopes and second derivatives.
-struct Tilts {
+pub struct Tilts {
     per: [Vector3<f64>; 2],
     xi_xi: Vector3<f64>,
     xi_lambda: Vector3<f64>,
@@ -279,58 +282,4 @@ pub(super) fn rows_onto_unknowns(
 /// Columns of a section's motion, and where the unknowns of each are.
 fn columns((body, shaft): Firsts, count: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..count).filter_map(move |i| Some((i, if i < 5 { body? + i } else { shaft + i - 5 })))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::solver::dynamics::shaft::Section;
-
-    fn section() -> StaticSection {
-        let section = Section {
-            along: 0.21,
-            deflection: vec![0.7, -0.4],
-            turn: vec![3.1, 5.2],
-            stretch: vec![0.6],
-            shortening: vec![2.0, -0.7, -0.7, 1.5],
-        };
-        StaticSection { shaft: 0, section, loads: [0.0; 5] }
-    }
-
-    /// Body and two shapes either way and one along.
-    fn place(at: &[f64]) -> SectionPlace {
-        SectionPlace::new(&section(), &Five::from_column_slice(&at[..5]), &at[5..])
-    }
-
-    /// Turned as far as a shaft may, so that what the second order leaves out shows.
-    #[test]
-    fn motion_and_curvature_are_slopes_of_a_sections_place() {
-        let of = section();
-        let here = [1e-3, -2e-3, 3e-3, 0.2, -0.3, 2e-3, -3e-3, -1e-3, 4e-3, 1e-3];
-        let gradient = Five::from([3.0, -1.0, 2.0, 0.5, -0.7]);
-        let moved = |column: usize, by: f64| {
-            let mut at = here;
-            at[column] += by;
-            place(&at)
-        };
-        let found = place(&here);
-        let slopes = found.slopes(&of);
-        let (motion, tilts) = found.motion(&slopes);
-        let curved = found.curvature(&of, &gradient, &slopes, (&motion, &tilts));
-        let step = 1e-6;
-        for column in 0..here.len() {
-            let (high, low) = (moved(column, step), moved(column, -step));
-            let slope = (high.coordinates - low.coordinates) / (2.0 * step);
-            let off = (slope - motion.column(column)).amax();
-            assert!(off <= 1e-8, "{column}: {slope} {motion}");
-            let of_gradient = |place: &SectionPlace| {
-                let (motion, _) = place.motion(&place.slopes(&of));
-                motion.tr_mul(&gradient)
-            };
-            let bends = (of_gradient(&high) - of_gradient(&low)) / (2.0 * step);
-            let off = (bends - curved.column(column)).amax();
-            // The turns of 0.03 rad square to 1e-3 of numbers below 40.
-            assert!(off <= 3e-2, "{column}: {off:e} {curved}");
-        }
-    }
 }

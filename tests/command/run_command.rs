@@ -170,7 +170,11 @@ fn interrupted_by_a_signal_and_resumed() {
     assert!(stderr(&refused).contains("--resume") && stderr(&refused).contains("--fresh"));
     assert_eq!(json(parts.join("summary.json")), summary);
 
-    assert_eq!(stopped(command(&scene, &parts, &["--resume"]), 30, "-INT").0, Some(2));
+    // What the scene says already, given once more: the command to go on has it as it was written.
+    let again = ["--resume", "--set", "numerics.step=2 us"];
+    let (ended, message) = stopped(command(&scene, &parts, &again), 30, "-INT");
+    assert_eq!(ended, Some(2));
+    assert!(message.contains(" --set \"numerics.step=2 us\" --resume"), "{message}");
     let output = run(&scene, &parts, &["--resume"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("resumed at t = "));

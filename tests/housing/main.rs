@@ -25,3 +25,4 @@ mod reduced_laws;
 mod reduced_presses;
 mod reduced_steps;
 mod several_housings;
+mod small_laws;

@@ -10,3 +10,4 @@ mod mesh_files;
 mod mesh_fuzz;
 mod mesh_generators;
 mod mesh_vtu;
+mod vector_areas;

@@ -8,3 +8,5 @@ mod compare_npy;
 mod compare_tolerances;
 mod output_files;
 mod output_plots;
+mod small_laws;
+mod spectrum_laws;

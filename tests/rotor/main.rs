@@ -5,6 +5,7 @@ mod common;
 
 mod assemblies;
 mod beam;
+mod formulas;
 mod in_elements;
 mod relaxing;
 mod run_ups;

@@ -17,6 +17,7 @@ mod rubber_great_strain;
 mod rubber_limits;
 mod rubber_prony;
 mod rubber_steps;
+mod small_laws;
 mod solid_explicit;
 mod solid_factors;
 mod solid_plan;

@@ -50,22 +50,3 @@ pub fn ratios(
         ball_spin: 0.5 * pitch_radius / ball_radius * (1.0 - gamma * gamma),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn passes_of_both_races_add_up_to_one_a_ball_and_turn() {
-        // Seen from the cage the races turn at −cage and 1 − cage.
-        let frequencies = ratios(8, 5.955e-3, 26.0e-3, 0.3);
-        let sum = frequencies.ball_pass_outer + frequencies.ball_pass_inner;
-        assert!((sum - 8.0).abs() <= 1e-14, "sum {sum}");
-    }
-
-    #[test]
-    fn small_balls_ride_at_half_the_shaft_speed() {
-        let cage = ratios(8, 1e-9, 26.0e-3, 0.0).cage;
-        assert!((cage - 0.5).abs() <= 1e-7, "cage {cage}");
-    }
-}

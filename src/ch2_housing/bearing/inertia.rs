@@ -91,34 +91,3 @@ const GAUSS_8: [(f64, f64); 8] = [
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_47),
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_ring_without_groove_is_a_hollow_cylinder() {
-        let exact = hollow_cylinder(15e-3, 20e-3, 20e-3, 7850.0);
-        // The groove's circle lies outside the material.
-        let ring = grooved_ring(15e-3, 20e-3, 30e-3, 6e-3, 20e-3, 7850.0);
-        for (a, b) in [
-            (ring.mass, exact.mass),
-            (ring.axial, exact.axial),
-            (ring.transverse, exact.transverse),
-        ] {
-            assert!((a / b - 1.0).abs() <= 1e-13);
-        }
-    }
-
-    #[test]
-    fn the_groove_takes_away_the_volume_of_pappus() {
-        // A groove cut half a circle deep at the land: volume by Pappus, 2π(R − 4r/3π)·πr²/2.
-        let (land, radius) = (22e-3, 3e-3);
-        let ring = grooved_ring(15e-3, land, land, radius, 20e-3, 1000.0);
-        let full = hollow_cylinder(15e-3, land, 20e-3, 1000.0);
-        let centroid = land - 4.0 * radius / (3.0 * PI);
-        let volume = 2.0 * PI * centroid * 0.5 * PI * radius * radius;
-        // The circular profile has a vertical tangent at its edge: Gauss converges slowly there.
-        assert!(((full.mass - ring.mass) / (1000.0 * volume) - 1.0).abs() <= 2e-3);
-    }
-}

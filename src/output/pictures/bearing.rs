@@ -381,7 +381,7 @@ fn loads_over_azimuth(
 
 /// At most about `wanted` points: of each stretch the lowest and the highest, in their order, so
 /// that no peak is lost.
-pub(super) fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
+pub fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
     if points.len() <= wanted {
         return points;
     }
@@ -397,21 +397,4 @@ pub(super) fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
         kept.extend([*first, *second]);
     }
     kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn thinning_keeps_peaks_and_order() {
-        let mut points: Vec<[f64; 2]> = (0..100_000).map(|i| [i as f64, 0.0]).collect();
-        points[54_321][1] = 7.0;
-        points[77_777][1] = -3.0;
-        let kept = thin(points.clone(), 1500);
-        assert!(kept.len() <= 1502, "{}", kept.len());
-        assert!(kept.contains(&[54_321.0, 7.0]) && kept.contains(&[77_777.0, -3.0]));
-        assert!(kept.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
-        assert_eq!(thin(points[..10].to_vec(), 1500), points[..10]);
-    }
 }

@@ -233,20 +233,3 @@ impl Legend {
 fn text_width(content: &str) -> i32 {
     content.chars().count() as i32 * 11
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn twenty_curves_differ_in_colour() {
-        for one in 0..3 * COLOURS.len() {
-            for other in 0..one {
-                let far = |a: u8, b: u8| u32::from(a.abs_diff(b));
-                let (RGBColor(a, b, c), RGBColor(x, y, z)) = (colour(one), colour(other));
-                // Far enough to be told apart in a legend.
-                assert!(far(a, x) + far(b, y) + far(c, z) >= 30, "{one} {other}");
-            }
-        }
-    }
-}

@@ -9,11 +9,11 @@
 //! Drawn for a width of 700 px and more, in the colours of Okabe and Ito that colour-blind readers
 //! can tell apart, with another marker for every curve.
 pub mod campbell;
-mod canvas;
+pub mod canvas;
 pub mod load_zone;
 pub mod orbit;
 pub mod polar;
-mod ticks;
+pub mod ticks;
 pub mod xy;
 
 pub use campbell::campbell;

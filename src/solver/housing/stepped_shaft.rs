@@ -80,7 +80,7 @@ impl Joint {
 }
 
 /// The law with its body at one instant.
-fn pulled(joint: &Joint, place: &SectionPlace, body: &BodyState) -> Pull {
+pub fn pulled(joint: &Joint, place: &SectionPlace, body: &BodyState) -> Pull {
     let section = RaceNow::new(BodyState {
         position: place.centre,
         orientation: place.orientation,
@@ -359,115 +359,11 @@ fn add_to(forces: &mut [Node], more: impl Iterator<Item = (u32, Vec3)>) {
 }
 
 /// Force of an unbalance at a time (s): outwards with the square of the speed, and back where the speed grows, N.
-fn unbalanced(of: &SectionUnbalance, speed: &Profile, place: &SectionPlace, t: f64) -> Vec3 {
+pub fn unbalanced(of: &SectionUnbalance, speed: &Profile, place: &SectionPlace, t: f64) -> Vec3 {
     let (sine, cosine) = libm::sincos(of.angle);
     let outwards: Vec3 = (place.orientation * Vector3::new(0.0, cosine, sine)).into();
     let axis: Vec3 = (place.orientation * Vector3::x()).into();
     let (speed, growth) = (speed.value(t), speed.rate(t));
     let out = scale(outwards, of.size * speed * speed);
     add(out, scale(cross(axis, outwards), -of.size * growth))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kinematics::vec3::norm;
-
-    const NODES: [Vec3; 5] = [
-        [0.2, 0.012, 0.0],
-        [0.2, -0.004, 0.01],
-        [0.2, 0.0, -0.013],
-        [0.2, 0.006, 0.009],
-        [0.2, -0.011, -0.002],
-    ];
-
-    fn joint() -> Joint {
-        let nodes: Vec<(u32, Vec3, f64)> =
-            (0..5).map(|n| (n as u32, NODES[n], 1.0 + n as f64)).collect();
-        let section = RotorSection::new(&nodes).unwrap();
-        let stiffness = [2e9, 2e9, 2e9, 1e6, 1e6, 1e6];
-        let damping = [2e2, 2e2, 2e2, 0.2, 0.2, 0.2];
-        Joint { body: 0, section, law: SpringDashpot { stiffness, damping, ..Default::default() } }
-    }
-
-    /// Nodes that have spun by `angle` about an axis through anywhere, strained and moved: displacement and rate.
-    fn state(node: u32, t: f64) -> Vec3 {
-        let n = f64::from(node);
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 2.0 + 600.0 * t);
-        let strained = Vector3::from(NODES[node as usize]) * (1.0 + 1e-4 * n)
-            + Vector3::z() * 1e-6 * n * (1.0 + 50.0 * t);
-        let now = turn * strained + Vector3::new(1e-6, 2e-6 + 0.03 * t, -3e-6);
-        (now - Vector3::from(NODES[node as usize])).into()
-    }
-
-    fn rate(node: u32, t: f64) -> Vec3 {
-        const H: f64 = 1e-7;
-        let (later, before) = (state(node, t + H), state(node, t - H));
-        [0, 1, 2].map(|i: usize| (later[i] - before[i]) / (2.0 * H))
-    }
-
-    fn body(t: f64) -> BodyState {
-        let mut body = BodyState::at_rest([0.2 + 2e-6, 1e-6 + 0.01 * t, 5e-7]);
-        let tilt = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 1e-5, 2e-5));
-        body.orientation =
-            tilt * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 2.0 + 600.0 * t);
-        (body.velocity, body.spin) =
-            ([0.0, 0.01, 0.0], (tilt * Vector3::new(600.0, 0.0, 0.0)).into());
-        body
-    }
-
-    /// What a joint does to section and body sums to nothing, about any point; its power is what its springs lose and its
-    /// dashpots take.
-    #[test]
-    fn joints_keep_momentum_and_their_power_is_stored_or_lost() {
-        let joint = joint();
-        let at = |t: f64| {
-            let place = joint.section.place(|n| state(n, t), |n| rate(n, t));
-            (place, pulled(&joint, &place, &body(t)))
-        };
-        let (place, pull) = at(0.0);
-        let (mut force, mut moment, mut power) = ([0.0; 3], [0.0; 3], 0.0);
-        for (node, of) in joint.section.forces_at(&place, pull.on[0].force, pull.on[0].moment) {
-            let now = add(NODES[node as usize], state(node, 0.0));
-            force = add(force, of);
-            moment = add(moment, cross(now, of));
-            power += dot(of, rate(node, 0.0));
-        }
-        let (on, body) = (pull.on[1], body(0.0));
-        power += dot(on.force, body.velocity) + dot(on.moment, body.spin);
-        let left = norm(add(force, on.force));
-        assert!(left <= 1e-12 * norm(on.force), "{left}");
-        let about = add(moment, add(on.moment, cross(body.position, on.force)));
-        assert!(norm(about) <= 1e-12 * norm(on.force), "{about:?}");
-        // Differences over 1e-7 s, of an energy that is a part of 1e-3 of what changes it.
-        let step = 1e-7;
-        let grows = (at(step).1.energy - at(-step).1.energy) / (2.0 * step);
-        assert!(
-            (power + grows - pull.loss).abs() <= 1e-5 * power.abs(),
-            "{power} {grows} {}",
-            pull.loss
-        );
-        assert!(pull.loss < 0.0);
-    }
-
-    /// Of a force that turns with the section: outwards with Ω², and against the sense of rotation where the speed grows.
-    #[test]
-    fn an_unbalance_pulls_outwards_and_lags_a_shaft_that_speeds_up() {
-        let section = joint().section;
-        let of = SectionUnbalance { section, size: 1e-3, angle: 0.5 };
-        let place = of.section.place(|n| state(n, 0.0), |n| rate(n, 0.0));
-        let angle: f64 = 2.0 + 0.5;
-        let speed = Profile::SmoothRamp { from: 0.0, to: 100.0, start: -1.0, duration: 2.0 };
-        let force = unbalanced(&of, &speed, &place, 0.0);
-        let (value, growth) = (speed.value(0.0), speed.rate(0.0));
-        assert!(growth > 1.0);
-        let out = 1e-3 * value * value;
-        let back = 1e-3 * growth;
-        // The section's nodes are strained by 1e-4 of themselves, which turns what fits them best by as little.
-        let expected =
-            [out * angle.cos() + back * angle.sin(), out * angle.sin() - back * angle.cos()];
-        for (part, expected) in force[1..].iter().zip(expected) {
-            assert!((part - expected).abs() <= 1e-3 * out, "{force:?} {expected}");
-        }
-    }
 }

@@ -124,15 +124,3 @@ impl Ran {
         subjects.flat_map(of).filter(|(_, _, count)| *count > 0).collect()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_stage_has_its_number() {
-        for (number, stage) in Stage::ALL.into_iter().enumerate() {
-            assert_eq!(stage as usize, number, "{stage:?}");
-        }
-    }
-}

@@ -70,35 +70,3 @@ pub fn free_motions(nodes: &[Vec3], prescribed: &[Prescribed]) -> FreeMotions {
     }
     free
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::generate::bar;
-    use crate::solver::profile::Profile;
-
-    fn held(components: &[(usize, f64)]) -> FreeMotions {
-        let mesh = bar([0.1, 0.01, 0.01], [4, 2, 2]).unwrap().mesh;
-        let mut prescribed = Vec::new();
-        for (axis, at) in components {
-            for (node, place) in (0..).zip(&mesh.nodes) {
-                if place[0] == *at {
-                    prescribed.push(Prescribed { node, axis: *axis, profile: Profile::ZERO });
-                }
-            }
-        }
-        free_motions(&mesh.nodes, &prescribed)
-    }
-
-    #[test]
-    fn free_motions_are_counted_and_named() {
-        let free = held(&[]);
-        assert_eq!((free.count, free.shares), (6, [1.0; 6]));
-        assert_eq!(held(&[(0, 0.0), (1, 0.0), (2, 0.0)]).count, 0);
-        // An end held along the axis only: it cannot turn about y and z either.
-        let guided = held(&[(0, 0.0)]);
-        assert_eq!((guided.count, guided.names().as_str()), (3, "along y, along z, about x"));
-        let hinged = held(&[(2, 0.0), (2, 0.1)]);
-        assert_eq!((hinged.count, hinged.names().as_str()), (3, "along x, along y, about z"));
-    }
-}

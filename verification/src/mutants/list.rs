@@ -54,15 +54,12 @@ impl Mutant {
     }
 }
 
-/// What may notice a fault, written as its arguments: `--test NAME [FUNCTION]`,
-/// `--lib FUNCTION` or `--case ID`.
+/// What may notice a fault, written as its arguments: `--test NAME [FUNCTION]` or `--case ID`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Check {
     /// A file of `tests/`, by its path there without `.rs`, and which of its tests. The first folder is the
     /// binary it belongs to.
     Test { name: String, filter: Option<String> },
-    /// Unit tests of the library whose path contains the filter.
-    Lib { filter: Option<String> },
     /// A verification case.
     Case { id: String },
 }
@@ -72,7 +69,6 @@ impl Check {
     pub fn program(&self) -> String {
         match self {
             Check::Test { name, .. } => format!("--test {}", binary_of(name)),
-            Check::Lib { .. } => "--lib".into(),
             Check::Case { .. } => "--case".into(),
         }
     }
@@ -86,12 +82,9 @@ impl Check {
                 name: (*name).into(),
                 filter: filter.first().map(|f| (*f).into()),
             }),
-            ["--lib", filter @ ..] if filter.len() <= 1 => {
-                Ok(Check::Lib { filter: filter.first().map(|f| (*f).into()) })
-            }
             ["--case", id] => Ok(Check::Case { id: (*id).into() }),
             _ => Err(format!(
-                "`{text}` is no check: --test NAME [FUNCTION], --lib [FUNCTION] or --case ID"
+                "`{text}` is no check: --test NAME [FUNCTION] or --case ID"
             )),
         }
     }
@@ -106,7 +99,6 @@ impl fmt::Display for Check {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (kind, name, filter) = match self {
             Check::Test { name, filter } => ("--test ", name.as_str(), filter.as_ref()),
-            Check::Lib { filter } => ("--lib", "", filter.as_ref()),
             Check::Case { id } => ("--case ", id.as_str(), None),
         };
         write!(formatter, "{kind}{name}")?;

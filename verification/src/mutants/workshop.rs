@@ -69,7 +69,6 @@ impl Sources {
                         || name.starts_with(&format!("tests/{test}/"))
                         || name.starts_with("tests/common")
                 }
-                Check::Lib { .. } => false,
                 Check::Case { id } => {
                     name.starts_with("verification/src/")
                         && !name.starts_with("verification/src/mutants/")
@@ -177,9 +176,6 @@ impl Workshop {
                 let module = name.split_once('/').map(|(_, module)| format!("{module}::"));
                 command.args(filter.clone().or(module)).arg("--test-threads=1");
             }
-            Check::Lib { filter } => {
-                command.args(filter).arg("--test-threads=1");
-            }
         }
         // The same random cases every time, and no snapshot is touched.
         command.env("PROPTEST_RNG_SEED", "20").env("INSTA_UPDATE", "no");
@@ -204,7 +200,7 @@ impl Workshop {
     /// # Errors
     /// When cargo cannot be started at all.
     pub fn compiles(&self) -> Result<Result<(), String>, String> {
-        let output = self.cargo(&["test", "--no-run", "--lib", "--bins"], "json")?;
+        let output = self.cargo(&["test", "--no-run", "--bins"], "json")?;
         let messages = || String::from_utf8_lossy(&output.stdout).into_owned();
         Ok(if output.status.success() { Ok(()) } else { Err(messages()) })
     }
@@ -230,7 +226,6 @@ impl Workshop {
         }
         let wanted = match check {
             Check::Test { name, .. } => ("test", binary_of(name)),
-            Check::Lib { .. } => ("lib", ""),
             Check::Case { .. } => ("bin", "verify"),
         };
         let program = String::from_utf8_lossy(&output.stdout)
@@ -245,10 +240,9 @@ impl Workshop {
     fn compile(&self, check: &Check) -> Result<Output, String> {
         let arguments: &[&str] = match check {
             Check::Test { name, .. } => &["test", "--no-run", "--test", binary_of(name)],
-            Check::Lib { .. } => &["test", "--no-run", "--lib"],
             // Beside a test, as it would be for that: packages that both need are then of the same
             // features, and the library is not built twice.
-            Check::Case { .. } => &["test", "--no-run", "--workspace", "--test", "judge"],
+            Check::Case { .. } => &["test", "--no-run", "--workspace", "--test", "laws"],
         };
         self.cargo(arguments, "json-render-diagnostics")
     }
