@@ -3,7 +3,8 @@
 //! Pressure is uniform on each cell of a rectangular grid; a cell sinks by Love's formula for a uniformly loaded
 //! rectangle (Love 1929; Johnson, Contact Mechanics, 3.25). Where the surface comes to lie,
 //! p ≥ 0, gap ≥ 0 and p·gap = 0 is the minimum of ½ pᵀC p − pᵀ(δ − g) over p ≥ 0, which conjugate gradients find
-//! (Polonsky and Keer, Wear 231, 1999; here at a given approach δ instead of a given load).
+//! (Polonsky and Keer, Wear 231, 1999; here at a given approach δ instead of a given load, and over the cells with
+//! pressure alone, until those have settled and the others are looked at).
 //!
 //! The modulus E* is one, since it scales pressures alone.
 
@@ -47,8 +48,21 @@ pub fn love(x: f64, y: f64, a: f64, b: f64) -> f64 {
     (both(xp, yp) - both(xp, ym) - both(xm, yp) + both(xm, ym)) / PI
 }
 
-/// Cells of a row that are summed at a time: of the usual twenty all.
-const WIDE: usize = 20;
+/// Columns of a row of cells, up to `to`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Span {
+    from: usize,
+    to: usize,
+}
+
+/// In each row from the first to the last cell with pressure.
+fn pressed_spans(pressure: &[f64], ny: usize) -> Vec<Span> {
+    let span = |row: &[f64]| Span {
+        from: row.iter().position(|p| *p > 0.0).unwrap_or(0),
+        to: row.iter().rposition(|p| *p > 0.0).map_or(0, |last| last + 1),
+    };
+    pressure.chunks_exact(ny).map(span).collect()
+}
 
 /// What unit pressure on a cell, and on its mirror image, does to every cell, for a grid of one size.
 #[derive(Clone, Debug)]
@@ -73,25 +87,43 @@ impl Influence {
         Influence { grid, kernel }
     }
 
-    /// How deep all cells sink under `pressure`, where each cell of the grid is `scale` times as large.
+    /// How deep the cells in `spans` sink under `pressure`, where each cell of the grid is `scale` times as large; others
+    /// are left as they are.
     ///
     /// Some cells of a row at a time, whose sums stay in registers while the kernel goes by; every sum is over the
     /// pressed cells in their order.
-    fn sink(&self, scale: f64, pressure: &[f64], to: &mut [f64]) {
+    fn sink(&self, scale: f64, pressure: &[f64], spans: &[Span], to: &mut [f64]) {
         let ny = self.grid.ny;
         let pressed = || (0..pressure.len()).filter(|cell| pressure[*cell] != 0.0);
         let pressed: Vec<_> =
             pressed().map(|cell| (cell / ny, cell % ny, scale * pressure[cell])).collect();
-        for (i, row) in to.chunks_exact_mut(ny).enumerate() {
-            let wide = ny - ny % WIDE;
-            let (blocks, rest) = row.split_at_mut(wide);
-            for (block, sums) in blocks.chunks_exact_mut(WIDE).enumerate() {
-                sums.copy_from_slice(&self.sums::<WIDE>(&pressed, i, block * WIDE));
-            }
-            for (j, sum) in rest.iter_mut().enumerate() {
-                [*sum] = self.sums(&pressed, i, wide + j);
+        for ((i, row), span) in to.chunks_exact_mut(ny).enumerate().zip(spans) {
+            let mut j = span.from;
+            while j < span.to {
+                let eights = (span.to - j).div_ceil(8).min((ny - j) / 8);
+                let row = &mut row[j..];
+                j += match eights {
+                    0 => self.fill::<1>(&pressed, i, j, row),
+                    1 => self.fill::<8>(&pressed, i, j, row),
+                    2 => self.fill::<16>(&pressed, i, j, row),
+                    3 => self.fill::<24>(&pressed, i, j, row),
+                    4 => self.fill::<32>(&pressed, i, j, row),
+                    _ => self.fill::<40>(&pressed, i, j, row),
+                };
             }
         }
+    }
+
+    /// The next `N` cells of a row; how many they are.
+    fn fill<const N: usize>(
+        &self,
+        pressed: &[(usize, usize, f64)],
+        i: usize,
+        j: usize,
+        row: &mut [f64],
+    ) -> usize {
+        row[..N].copy_from_slice(&self.sums::<N>(pressed, i, j));
+        N
     }
 
     /// Sums over all pressed cells, as (row, column, pressure), in row `i` from column `j` on.
@@ -125,6 +157,11 @@ pub struct Pressed {
     pub iterations: usize,
 }
 
+/// Cells without pressure are looked at when the gaps of the others are this part of what they were at the last look:
+/// one in ten iterations, whose sums are three times as long as those over pressed cells alone.
+const LOOK: f64 = 0.05;
+/// Pressure of a cell that joins, in parts of what the last step would give it.
+const JOINING: f64 = 1e-3;
 /// Iterations after which a solve is given up; tens are usual.
 const MOST_ITERATIONS: usize = 500;
 
@@ -156,70 +193,84 @@ pub fn press(
             gap.iter().map(|gap| (approach - gap).max(0.0) * per_depth).collect()
         }
     };
+    let all = vec![Span { from: 0, to: grid.ny }; grid.nx];
     let (mut sunk, mut q) = (vec![0.0; cells], vec![0.0; cells]);
-    let mut t = vec![0.0; cells];
-    let (mut before, mut conjugate) = (1.0, 0.0);
-    let mut renewed = true;
+    let (mut t, mut change) = (vec![0.0; cells], vec![0.0; cells]);
+    let (mut before, mut conjugate, mut step) = (1.0, 0.0, 0.0);
+    influence.sink(scale, &p, &all, &mut sunk);
+    // Whether `sunk` is that of all cells, the columns elsewhere, and the gap under pressure when it last was.
+    let (mut everywhere, mut spans, mut looked) = (true, all.clone(), f64::INFINITY);
     for iteration in 0..MOST_ITERATIONS {
-        if renewed {
-            influence.sink(scale, &p, &mut sunk);
-        }
         // Positive is open, and wants less pressure.
         let open = |cell: usize, sunk: &[f64]| gap[cell] + sunk[cell] - approach;
-        let mut square = 0.0;
+        let (mut square, mut worst) = (0.0, 0.0f64);
+        for cell in (0..cells).filter(|cell| p[*cell] > 0.0) {
+            let r = open(cell, &sunk);
+            square += r * r;
+            worst = worst.max(r.abs());
+        }
         // NaN ends the search.
-        let mut worst = 0.0f64;
-        if !sunk.iter().all(|sunk| sunk.is_finite()) {
+        if !f64::is_finite(square) {
             return None;
         }
-        for cell in 0..cells {
-            let r = open(cell, &sunk);
-            if p[cell] > 0.0 {
-                square += r * r;
-                worst = worst.max(r.abs());
-            } else {
-                worst = worst.max(-r);
+        if everywhere {
+            let others = (0..cells).filter(|cell| p[*cell] <= 0.0);
+            let overclosed_now = others.fold(0.0f64, |most, cell| most.max(-open(cell, &sunk)));
+            if worst.max(overclosed_now) <= tolerance * overclosed {
+                let load = p.iter().sum::<f64>() * area;
+                // The minimum, which what is left of the gaps changes to second order only.
+                let inside = gap.iter().zip(&sunk).map(|(gap, u)| approach - gap - 0.5 * u);
+                let energy = p.iter().zip(inside).map(|(p, inside)| p * inside).sum::<f64>() * area;
+                return Some(Pressed { load, energy, pressure: p, iterations: iteration });
             }
-        }
-        if worst <= tolerance * overclosed {
-            let load = p.iter().sum::<f64>() * area;
-            // The minimum, which what is left of the gaps changes to second order only.
-            let inside = gap.iter().zip(&sunk).map(|(gap, u)| approach - gap - 0.5 * u);
-            let energy = p.iter().zip(inside).map(|(p, inside)| p * inside).sum::<f64>() * area;
-            return Some(Pressed { load, energy, pressure: p, iterations: iteration });
+            // Overclosed cells without pressure join with hardly any, so that the first step does not send them away
+            // again, and the directions begin anew.
+            change.fill(0.0);
+            let firmness =
+                JOINING * if step > 0.0 { step } else { 1.0 / (scale * influence.kernel[0]) };
+            for cell in 0..cells {
+                let r = open(cell, &sunk);
+                if p[cell] <= 0.0 && r < 0.0 {
+                    p[cell] = -firmness * r;
+                    change[cell] = p[cell];
+                }
+            }
+            (spans, looked, everywhere) = (pressed_spans(&p, grid.ny), worst, false);
+            if change.iter().any(|change| *change != 0.0) {
+                influence.sink(scale, &change, &spans, &mut q);
+                sunk.iter_mut().zip(&q).for_each(|(sunk, q)| *sunk += q);
+                conjugate = 0.0;
+                continue;
+            }
+        } else if worst <= (LOOK * looked).max(tolerance * overclosed) {
+            influence.sink(scale, &p, &all, &mut sunk);
+            everywhere = true;
+            continue;
         }
         let follow = if before > 0.0 { conjugate * square / before } else { 0.0 };
         for cell in 0..cells {
-            let along = open(cell, &sunk) + follow * t[cell];
-            t[cell] = if p[cell] > 0.0 { along } else { 0.0 };
+            t[cell] = if p[cell] > 0.0 { open(cell, &sunk) + follow * t[cell] } else { 0.0 };
         }
         before = square;
-        influence.sink(scale, &t, &mut q);
+        influence.sink(scale, &t, &spans, &mut q);
         let (mut over, mut under) = (0.0, 0.0);
-        for cell in 0..cells {
-            over += t[cell] * if p[cell] > 0.0 { open(cell, &sunk) } else { 0.0 };
+        for cell in (0..cells).filter(|cell| p[*cell] > 0.0) {
+            over += t[cell] * open(cell, &sunk);
             under += t[cell] * q[cell];
         }
-        let step = if under > 0.0 { over / under } else { 0.0 };
-        (conjugate, renewed) = (1.0, false);
-        // Overclosed cells without pressure join, and the directions begin anew.
-        let alone = scale * influence.kernel[0];
-        for cell in 0..cells {
-            if p[cell] > 0.0 {
-                p[cell] -= step * t[cell];
-                if p[cell] < 0.0 {
-                    (p[cell], renewed) = (0.0, true);
-                }
-            } else {
-                let r = open(cell, &sunk) - step * q[cell];
-                if r < 0.0 {
-                    p[cell] = if step > 0.0 { -step * r } else { -r / alone };
-                    (conjugate, renewed) = (0.0, true);
-                }
+        (step, conjugate) = (if under > 0.0 { over / under } else { 0.0 }, 1.0);
+        change.fill(0.0);
+        for cell in (0..cells).filter(|cell| t[*cell] != 0.0) {
+            p[cell] -= step * t[cell];
+            sunk[cell] -= step * q[cell];
+            if p[cell] < 0.0 {
+                (change[cell], p[cell], conjugate) = (-p[cell], 0.0, 0.0);
             }
         }
-        if !renewed {
-            sunk.iter_mut().zip(&q).for_each(|(sunk, q)| *sunk -= step * q);
+        // What pulled lets go, and the directions begin anew.
+        if conjugate == 0.0 {
+            influence.sink(scale, &change, &spans, &mut q);
+            sunk.iter_mut().zip(&q).for_each(|(sunk, q)| *sunk += q);
         }
     }
     None

@@ -83,9 +83,7 @@ impl Check {
                 filter: filter.first().map(|f| (*f).into()),
             }),
             ["--case", id] => Ok(Check::Case { id: (*id).into() }),
-            _ => Err(format!(
-                "`{text}` is no check: --test NAME [FUNCTION] or --case ID"
-            )),
+            _ => Err(format!("`{text}` is no check: --test NAME [FUNCTION] or --case ID")),
         }
     }
 }
