@@ -1,9 +1,9 @@
 # Set-up is two commands: `make verify` (the main job) and `make test`.
-# Everything builds with the one release profile. Commands and tests still compile apart: what tests alone depend on asks more
-# features of packages that both use (approx, either, once_cell, serde), so that these, and the library with them, are built
-# once for `make verify` and once for `make test`.
+# Everything builds with the one release profile. What tests alone depend on asks more features of packages that all use
+# (approx, bitflags, once_cell): commands are built beside a test, as `make test` has them, or the library would be built twice.
 CARGO ?= cargo
-VERIFY = $(CARGO) run --release --locked -q -p verification --bin verify --
+BOTH = -p bearing-dynamics -p verification
+VERIFY = $(CARGO) build --release --locked -q $(BOTH) --bins --test single_thread && "$${CARGO_TARGET_DIR:-target}/release/verify"
 
 .PHONY: verify verify-full test golden bench pareto mutants doc lint fuzz
 
@@ -19,20 +19,20 @@ verify-full:
 SKIPPED = "$${CARGO_TARGET_DIR:-target}/skipped.txt"
 test:
 	@rm -f $(SKIPPED)
-	@status=0; $(CARGO) test --release --locked --workspace || status=$$?; \
+	@status=0; $(CARGO) test --release --locked $(BOTH) || status=$$?; \
 	if [ -s $(SKIPPED) ]; then printf '\nNot all was tested:\n'; sort -u $(SKIPPED); fi; exit $$status
 
 ## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"; CASE=scenes for the rows of all scenes, CASE=crooked for what crooked ones say
 golden:
-	$(if $(filter scenes crooked,$(CASE)),FREEZE_REASON="$(REASON)" $(CARGO) test --release --locked --test command $(if $(filter scenes,$(CASE)),frozen,crooked)_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
+	$(if $(filter scenes crooked,$(CASE)),FREEZE_REASON="$(REASON)" $(CARGO) test --release --locked $(BOTH) --test command $(if $(filter scenes,$(CASE)),frozen,crooked)_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
 
 ## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:
-	$(CARGO) bench --locked --bench statics --profile release
-	$(CARGO) bench --locked --bench dynamics --profile release
-	$(CARGO) bench --locked --bench solids --profile release
-	$(CARGO) bench --locked --bench rubber --profile release
-	$(CARGO) bench --locked --bench calculix --profile release
+	$(CARGO) bench --locked -p benches --bench statics --profile release
+	$(CARGO) bench --locked -p benches --bench dynamics --profile release
+	$(CARGO) bench --locked -p benches --bench solids --profile release
+	$(CARGO) bench --locked -p benches --bench rubber --profile release
+	$(CARGO) bench --locked -p benches --bench calculix --profile release
 
 ## Run time against error, as CSV and SVG in target/pareto.
 pareto:

@@ -3,7 +3,7 @@
 use bearing_dynamics::output::bushing_reach::{Beyond, beyond};
 use bearing_dynamics::output::session::Session;
 use bearing_dynamics::scene::assembly::{
-    AssemblyScene, BushingInElements, BushingStepping, Spring, SpringAt, SpringEnd,
+    AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Spring, SpringAt, SpringEnd,
 };
 use bearing_dynamics::scene::bushing_reach::{PART, reach};
 use bearing_dynamics::solver::clock::{to_digits, told};
@@ -18,22 +18,28 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
             return four_nodes(&spring.name, elements);
         }
         let part = 100.0 * PART;
-        Some(match reach(of) {
+        let all = SleeveMotion::ALL.into_iter().map(|motion| reach(of, motion));
+        Some(match all.collect::<Result<Vec<_>, _>>() {
             Ok(all) => {
                 let reaches: Vec<String> =
                     SleeveMotion::ALL.into_iter().zip(all).filter_map(reaching).collect();
-                let reached =
-                    if reaches.is_empty() { "nowhere".into() } else { reaches.join(", ") };
-                let rest = if reaches.len() == all.len() {
-                    ""
+                let how = "relaxed rubber at large displacements, on a coarse mesh";
+                let name = &spring.name;
+                if reaches.is_empty() {
+                    format!(
+                        "the springs of bushing {name} are off by less than {part} % up to 30 % of its wall: {how}"
+                    )
                 } else {
-                    "; the other motions go to 30 % of its wall with less"
-                };
-                format!(
-                    "the springs of bushing {} are off by {part} % from {reached} on{rest}: relaxed rubber at large \
-                     displacements, on a coarse mesh",
-                    spring.name
-                )
+                    let rest = if reaches.len() == SleeveMotion::ALL.len() {
+                        ""
+                    } else {
+                        "; the other motions go to 30 % of its wall with less"
+                    };
+                    let reached = reaches.join(", ");
+                    format!(
+                        "the springs of bushing {name} are off by {part} % from {reached} on{rest}: {how}"
+                    )
+                }
             }
             Err(error) => {
                 format!("how far the springs of bushing {} hold is not known: {error}", spring.name)
@@ -100,7 +106,7 @@ fn reaching((motion, amplitude): (SleeveMotion, f64)) -> Option<String> {
 /// What a run says of its bushings: elements that are too stiff, and springs that it took beyond where they hold.
 pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<String> {
     let Some(assembly) = session.motion.assembly() else { return Vec::new() };
-    let known = |spring: usize| reach(scene.springs[spring].bushing.as_ref()?).ok();
+    let known = |of: &BushingOfSpring, motion| reach(of, motion).ok();
     let said = |beyond: Beyond| {
         let went = reaching((beyond.motion, beyond.reached))?;
         let holds = reaching((beyond.motion, beyond.holds))?;

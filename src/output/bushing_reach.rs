@@ -1,7 +1,8 @@
 //! Where a run took a bushing beyond what the springs that stand for it hold for, by the rows of its table.
 
 use crate::output::recorder::Recorder;
-use crate::scene::assembly::AssemblyScene;
+use crate::scene::assembly::{AssemblyScene, BushingOfSpring};
+use crate::scene::bushing_reach::surely;
 use crate::solver::dynamics::assembly::{Assembly, Mobility};
 use crate::solver::dynamics::connection::Law;
 use crate::solver::mount::Mount;
@@ -79,23 +80,23 @@ pub fn place(columns: Option<[usize; 5]>, mount: &Mount, values: &[f64]) -> [f64
     [x + mount.along, y + mount.along * tilt_z, z - mount.along * tilt_y, tilt_y, tilt_z]
 }
 
-/// Motions in which sleeves went farther than `reach` says of each spring with a bushing.
+/// Motions in which sleeves went farther than `reach` says of a spring with a bushing; asked of motions that went beyond what
+/// holds for sure.
 pub fn beyond(
     scene: &AssemblyScene,
     assembly: &Assembly,
     recorder: &Recorder,
-    reach: impl Fn(usize) -> Option<[f64; 4]>,
+    reach: impl Fn(&BushingOfSpring, SleeveMotion) -> Option<f64>,
 ) -> Vec<Beyond> {
     let mut all = Vec::new();
     for (index, spring) in scene.springs.iter().enumerate() {
-        if spring.bushing.is_none() {
-            continue;
-        }
+        let Some(of) = &spring.bushing else { continue };
         let Some(farthest) = farthest(assembly, recorder, &spring.name) else { continue };
-        let Some(reach) = reach(index) else { continue };
-        for ((motion, [reached, time]), holds) in
-            SleeveMotion::ALL.into_iter().zip(farthest).zip(reach)
-        {
+        for (motion, [reached, time]) in SleeveMotion::ALL.into_iter().zip(farthest) {
+            if reached <= surely(of, motion) {
+                continue;
+            }
+            let Some(holds) = reach(of, motion) else { continue };
             if reached > holds {
                 all.push(Beyond { spring: index, motion, reached, time, holds });
             }

@@ -2,7 +2,8 @@
 
 use crate::mesh::generate::{BushingMesh, Part, bushing};
 use crate::scene::assembly::BushingOfSpring;
-use crate::solver::solid::rubber::holds::holds;
+use crate::solver::solid::rubber::holds::{holds, lever};
+use crate::solver::solid::rubber::sleeve::SleeveMotion;
 
 /// Part by which relaxed rubber may push back harder or softer than the springs: as much as their own mesh may miss.
 pub const PART: f64 = 0.02;
@@ -12,12 +13,21 @@ pub const PART: f64 = 0.02;
 const MESH: BushingMesh =
     BushingMesh { around: 12, radial: 2, axial: 4, grading: 1.0, part: Part::Whole };
 
-/// Amplitude across, along, about the axis and tilting, m and rad, at which the springs stop holding by [`PART`].
+/// Of the wall: so far springs hold without a look. The difference grows with the square of the amplitude, so that rubber which is
+/// off by [`PART`] here would be off by half at 5 % of its wall.
+const SURELY: f64 = 0.01;
+
+/// Amplitude of a motion, m or rad, at which the springs stop holding by [`PART`]; infinite beyond what is looked at.
 ///
 /// # Errors
 /// Why it could not be found, in words.
-pub fn reach(of: &BushingOfSpring) -> Result<[f64; 4], String> {
+pub fn reach(of: &BushingOfSpring, motion: SleeveMotion) -> Result<f64, String> {
     let solid = bushing(&of.body, &MESH).and_then(|solid| solid.quadratic());
     let solid = solid.map_err(|error| error.to_string())?;
-    holds(&solid.mesh, &of.body, &of.material, PART).map_err(|error| error.to_string())
+    holds(&solid.mesh, &of.body, &of.material, motion, PART).map_err(|error| error.to_string())
+}
+
+/// Amplitude of a motion, m or rad, up to which [`reach`] need not be asked.
+pub fn surely(of: &BushingOfSpring, motion: SleeveMotion) -> f64 {
+    SURELY * of.body.thickness / lever(motion, &of.body)
 }

@@ -18,12 +18,14 @@ fn springs_of_a_bushing_hold_as_far_as_steps_say() {
     let body = Bushing { inner_diameter: 0.0197, thickness: 0.00835, length: 0.06 };
     let mesh = BushingMesh { around: 12, radial: 2, axial: 4, grading: 1.0, part: Part::Whole };
     let mesh = bushing(&body, &mesh).unwrap().quadratic().unwrap().mesh;
-    let [across, .., tilting] = holds(&mesh, &body, &with_bulk(100.0), 0.0157).unwrap();
+    let reach = |motion, part| holds(&mesh, &body, &with_bulk(100.0), motion, part).unwrap();
+    let across = reach(SleeveMotion::Radial, 0.0157);
     assert!((across / 1e-3 - 1.0).abs() <= 0.1, "{across}");
     // A long sleeve that tilts presses its ends into the wall.
+    let tilting = reach(SleeveMotion::Conical, 0.0157);
     assert!(tilting > 0.0 && tilting < 0.1, "{tilting}");
     // Half of the amplitude, a quarter of the difference.
-    let [half, ..] = holds(&mesh, &body, &with_bulk(100.0), 0.25 * 0.0157).unwrap();
+    let half = reach(SleeveMotion::Radial, 0.25 * 0.0157);
     assert!((half / across - 0.5).abs() <= 0.03, "{half} {across}");
 }
 
@@ -73,7 +75,7 @@ fn a_turned_bushing_holds_as_far_as_rings_say() {
     let body = Bushing { inner_diameter: 0.0197, thickness: 0.00835, length: 0.06 };
     let mesh = BushingMesh { around: 24, radial: 4, axial: 2, grading: 1.0, part: Part::Whole };
     let mesh = bushing(&body, &mesh).unwrap().quadratic().unwrap().mesh;
-    let [_, _, turned, _] = holds(&mesh, &body, &with_bulk(100.0), PART).unwrap();
+    let turned = holds(&mesh, &body, &with_bulk(100.0), SleeveMotion::Torsional, PART).unwrap();
     let exact = turn_of_rings(&body, PART);
     // Five times what is left by this mesh, 0.2 %; two cells through the wall leave 13 %.
     assert!((turned / exact - 1.0).abs() <= 1e-2, "{turned} {exact}");

@@ -242,7 +242,16 @@ impl Workshop {
             Check::Test { name, .. } => &["test", "--no-run", "--test", binary_of(name)],
             // Beside a test, as it would be for that: packages that both need are then of the same
             // features, and the library is not built twice.
-            Check::Case { .. } => &["test", "--no-run", "--workspace", "--test", "laws"],
+            Check::Case { .. } => &[
+                "test",
+                "--no-run",
+                "-p",
+                "bearing-dynamics",
+                "-p",
+                "verification",
+                "--test",
+                "judge",
+            ],
         };
         self.cargo(arguments, "json-render-diagnostics")
     }

@@ -16,8 +16,8 @@ const REST: f64 = 1e-3;
 const FIRST: f64 = 0.05;
 const FARTHEST: f64 = 0.3;
 
-/// Amplitude of each of [`SleeveMotion::ALL`], m or rad, at which force or moment over displacement differs by `part` from that
-/// of small amplitudes; infinite where it does not within 30 % of the wall. The mesh is that of a whole bushing.
+/// Amplitude of a motion, m or rad, at which force or moment over displacement differs by `part` from that of small amplitudes;
+/// infinite where it does not within 30 % of the wall. The mesh is that of a whole bushing.
 ///
 /// The difference grows with the square of the amplitude: one equilibrium at 5 % of the wall says where to look, one there says
 /// where it is.
@@ -28,27 +28,23 @@ pub fn holds(
     mesh: &TetMesh,
     body: &Bushing,
     material: &Elastomer,
+    motion: SleeveMotion,
     part: f64,
-) -> Result<[f64; 4], RelaxedError> {
-    let mut all = [f64::INFINITY; 4];
-    for (motion, reach) in SleeveMotion::ALL.into_iter().zip(&mut all) {
-        let arm = lever(motion, body);
-        let secant = |walls: f64| stiffness(mesh, material, motion, walls * body.thickness / arm);
-        let rest = secant(REST)?;
-        let off =
-            |walls: f64| -> Result<f64, RelaxedError> { Ok((secant(walls)? / rest - 1.0).abs()) };
-        let look = FIRST * (part / off(FIRST)?).sqrt();
-        if look > FARTHEST {
-            continue;
-        }
-        let walls = look * (part / off(look)?).sqrt();
-        *reach = walls * body.thickness / arm;
+) -> Result<f64, RelaxedError> {
+    let arm = lever(motion, body);
+    let secant = |walls: f64| stiffness(mesh, material, motion, walls * body.thickness / arm);
+    let rest = secant(REST)?;
+    let off = |walls: f64| -> Result<f64, RelaxedError> { Ok((secant(walls)? / rest - 1.0).abs()) };
+    let look = FIRST * (part / off(FIRST)?).sqrt();
+    if look > FARTHEST {
+        return Ok(f64::INFINITY);
     }
-    Ok(all)
+    let walls = look * (part / off(look)?).sqrt();
+    Ok(walls * body.thickness / arm)
 }
 
 /// What a unit of the motion moves the sleeve by where it goes farthest: 1, or m a radian.
-fn lever(motion: SleeveMotion, body: &Bushing) -> f64 {
+pub fn lever(motion: SleeveMotion, body: &Bushing) -> f64 {
     let (radius, half) = (0.5 * body.inner_diameter, 0.5 * body.length);
     match motion {
         SleeveMotion::Radial | SleeveMotion::Axial => 1.0,
