@@ -67,20 +67,21 @@ pub(super) fn momenta(problem: &SolidProblem, fields: &DMatrix<f64>) -> DMatrix<
             }
         }
     }
-    let mut momenta = DMatrix::zeros(fields.nrows(), fields.ncols());
-    for (mut to, from) in momenta.column_iter_mut().zip(fields.column_iter()) {
-        let mut shares = shares.iter();
-        for element in 0..elements.len() {
-            for a in elements.nodes(element) {
-                for (b, share) in elements.nodes(element).iter().zip(shares.by_ref()) {
-                    for i in 0..3 {
-                        to[3 * *a as usize + i] += share * from[3 * *b as usize + i];
-                    }
+    // All fields of a component side by side: the masses of a pair of nodes go by once for all of them.
+    let (from, mut momenta) =
+        (fields.transpose(), DMatrix::<f64>::zeros(fields.ncols(), fields.nrows()));
+    let mut shares = shares.iter();
+    for element in 0..elements.len() {
+        for a in elements.nodes(element) {
+            for (b, share) in elements.nodes(element).iter().zip(shares.by_ref()) {
+                for i in 0..3 {
+                    let (to, of) = (3 * *a as usize + i, 3 * *b as usize + i);
+                    momenta.column_mut(to).axpy(*share, &from.column(of), 1.0);
                 }
             }
         }
     }
-    momenta
+    momenta.transpose()
 }
 
 /// A shaft whose two planes differ.

@@ -145,7 +145,7 @@ pub fn matrices(
         turned.row_mut(3 * node + 2).copy_from(&y.momenta.row(3 * node + 1));
     }
     let mass = (mass_y + mass_z) * 0.5;
-    let axial_inertia = (&mass - symmetric(&z.fields.tr_mul(&turned))) * 2.0;
+    let axial_inertia = (&mass - symmetric(&(z.fields.transpose() * &turned))) * 2.0;
     let ends: Vec<f64> = stations.iter().step_by(NODES - 1).copied().collect();
     let shortening = ends.windows(2).map(|ends| shortening(ends[1] - ends[0])).collect();
     let plane = PlaneMatrices { mass, stiffness: (y.stiffness + z.stiffness) * 0.5, axial_inertia };
@@ -158,7 +158,7 @@ fn symmetric(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 
 impl Condensed {
     fn mass(&self) -> DMatrix<f64> {
-        symmetric(&self.fields.tr_mul(&self.momenta))
+        symmetric(&(self.fields.transpose() * &self.momenta))
     }
 }
 
