@@ -2,7 +2,7 @@
 //!
 //! What takes hold of a section adds energy, load and stiffness over the section's own five coordinates s, as over those
 //! of any body; they are then taken to the unknowns q by s(q): the slope is ∂s/∂qᵀ g, the stiffness ∂s/∂qᵀ K ∂s/∂q and
-//! what the curvature of s makes of g. A section stands where [`Section::place`] puts it in motion.
+//! what the curvature of s makes of g. A section stands where [`Section::place`](super::dynamics::shaft::Section::place) puts it in motion.
 
 use super::race_position::InnerRacePosition;
 use super::static_assembly::{Place, StaticSection, StaticShaft};
