@@ -2,8 +2,8 @@
 # Everything builds with the one release profile. What tests alone depend on asks more features of packages that all use
 # (approx, bitflags, once_cell): commands are built beside a test, as `make test` has them, or the library would be built twice.
 CARGO ?= cargo
-BOTH = -p bearing-dynamics -p verification
-VERIFY = $(CARGO) build --release --locked -q $(BOTH) --bins --test single_thread && "$${CARGO_TARGET_DIR:-target}/release/verify"
+PACKAGES = -p bearing-dynamics -p verification
+VERIFY = $(CARGO) build --release --locked -q $(PACKAGES) --bins --test single_thread && "$${CARGO_TARGET_DIR:-target}/release/verify"
 
 .PHONY: verify verify-full test golden bench pareto mutants doc lint fuzz
 
@@ -19,12 +19,12 @@ verify-full:
 SKIPPED = "$${CARGO_TARGET_DIR:-target}/skipped.txt"
 test:
 	@rm -f $(SKIPPED)
-	@status=0; $(CARGO) test --release --locked $(BOTH) || status=$$?; \
+	@status=0; $(CARGO) test --release --locked $(PACKAGES) || status=$$?; \
 	if [ -s $(SKIPPED) ]; then printf '\nNot all was tested:\n'; sort -u $(SKIPPED); fi; exit $$status
 
 ## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"; CASE=scenes for the rows of all scenes, CASE=crooked for what crooked ones say
 golden:
-	$(if $(filter scenes crooked,$(CASE)),FREEZE_REASON="$(REASON)" $(CARGO) test --release --locked $(BOTH) --test command $(if $(filter scenes,$(CASE)),frozen,crooked)_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
+	$(if $(filter scenes crooked,$(CASE)),FREEZE_REASON="$(REASON)" $(CARGO) test --release --locked $(PACKAGES) --test command $(if $(filter scenes,$(CASE)),frozen,crooked)_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
 
 ## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:
@@ -45,9 +45,9 @@ mutants:
 
 ## A million mutated scenes, mesh files and results of other programs, each, through their readers.
 fuzz:
-	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test scene scene_fuzz -- --nocapture
-	MESH_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test mesh mesh_fuzz -- --nocapture
-	RESULTS_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked --test results_fuzz -- --nocapture
+	SCENE_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked $(PACKAGES) --test scene scene_fuzz -- --nocapture
+	MESH_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked $(PACKAGES) --test mesh mesh_fuzz -- --nocapture
+	RESULTS_FUZZ_INPUTS=1000000 $(CARGO) test --release --locked $(PACKAGES) --test results_fuzz -- --nocapture
 
 doc:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --locked --no-deps --workspace

@@ -27,7 +27,7 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
                 let name = &spring.name;
                 if reaches.is_empty() {
                     format!(
-                        "the springs of bushing {name} are off by less than {part} % up to 30 % of its wall: {how}"
+                        "the springs of bushing {name} are off by less than {part} % up to 30 % of its wall, by what they are at 5 %: {how}"
                     )
                 } else {
                     let rest = if reaches.len() == SleeveMotion::ALL.len() {

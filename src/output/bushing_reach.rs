@@ -2,7 +2,7 @@
 
 use crate::output::recorder::Recorder;
 use crate::scene::assembly::{AssemblyScene, BushingOfSpring};
-use crate::scene::bushing_reach::surely;
+use crate::scene::bushing_reach::unasked;
 use crate::solver::dynamics::assembly::{Assembly, Mobility};
 use crate::solver::dynamics::connection::Law;
 use crate::solver::mount::Mount;
@@ -73,15 +73,16 @@ fn columns(assembly: &Assembly, recorder: &Recorder, end: &Mount) -> Option<Opti
     Some(Some([x, y, z, at("tilt_y")?, at("tilt_z")?]))
 }
 
-/// Of a mount: its place (m) and tilts (rad), small ones.
+/// Place (m) and small tilts (rad) of a mount, from a row of a table: `columns` are those of x, y, z (m) and both tilts (degrees) of
+/// its body; without any the body stands still at the origin.
 pub fn place(columns: Option<[usize; 5]>, mount: &Mount, values: &[f64]) -> [f64; 5] {
     let [x, y, z, tilt_y, tilt_z] = columns.map_or([0.0; 5], |at| at.map(|at| values[at]));
     let (tilt_y, tilt_z) = (tilt_y.to_radians(), tilt_z.to_radians());
     [x + mount.along, y + mount.along * tilt_z, z - mount.along * tilt_y, tilt_y, tilt_z]
 }
 
-/// Motions in which sleeves went farther than `reach` says of a spring with a bushing; asked of motions that went beyond what
-/// holds for sure.
+/// Motions in which sleeves went farther than `reach` says of a spring with a bushing; asked of motions that went farther than
+/// is taken for granted.
 pub fn beyond(
     scene: &AssemblyScene,
     assembly: &Assembly,
@@ -93,7 +94,7 @@ pub fn beyond(
         let Some(of) = &spring.bushing else { continue };
         let Some(farthest) = farthest(assembly, recorder, &spring.name) else { continue };
         for (motion, [reached, time]) in SleeveMotion::ALL.into_iter().zip(farthest) {
-            if reached <= surely(of, motion) {
+            if reached <= unasked(of, motion) {
                 continue;
             }
             let Some(holds) = reach(of, motion) else { continue };

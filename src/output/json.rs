@@ -33,7 +33,7 @@ pub fn read(path: &Path) -> Result<Value, JsonError> {
 /// # Errors
 /// [`JsonError`].
 pub fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
-    if values(bytes) > MOST_VALUES {
+    if count_values(bytes) > MOST_VALUES {
         return Err(JsonError::TooMany);
     }
     Ok(serde_json::from_slice(bytes)?)
@@ -41,7 +41,7 @@ pub fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
 
 /// How many values the text has at most: one, and one more for each comma and opening bracket outside
 /// of strings.
-pub fn values(bytes: &[u8]) -> usize {
+pub fn count_values(bytes: &[u8]) -> usize {
     let (mut count, mut in_string, mut escaped) = (1, false, false);
     for byte in bytes {
         match byte {

@@ -13,9 +13,9 @@ pub const PART: f64 = 0.02;
 const MESH: BushingMesh =
     BushingMesh { around: 12, radial: 2, axial: 4, grading: 1.0, part: Part::Whole };
 
-/// Of the wall: so far springs hold without a look. The difference grows with the square of the amplitude, so that rubber which is
+/// Of the wall: so far springs are taken to hold without a look. The difference grows with the square of the amplitude, so that rubber which is
 /// off by [`PART`] here would be off by half at 5 % of its wall.
-const SURELY: f64 = 0.01;
+const UNASKED: f64 = 0.01;
 
 /// Amplitude of a motion, m or rad, at which the springs stop holding by [`PART`]; infinite beyond what is looked at.
 ///
@@ -27,7 +27,7 @@ pub fn reach(of: &BushingOfSpring, motion: SleeveMotion) -> Result<f64, String> 
     holds(&solid.mesh, &of.body, &of.material, motion, PART).map_err(|error| error.to_string())
 }
 
-/// Amplitude of a motion, m or rad, up to which [`reach`] need not be asked.
-pub fn surely(of: &BushingOfSpring, motion: SleeveMotion) -> f64 {
-    SURELY * of.body.thickness / lever(motion, &of.body)
+/// Amplitude of a motion, m or rad, up to which springs are taken to hold without asking [`reach`].
+pub fn unasked(of: &BushingOfSpring, motion: SleeveMotion) -> f64 {
+    UNASKED * of.body.thickness / lever(motion, &of.body)
 }

@@ -56,7 +56,7 @@ mod resolve_rubber;
 mod resolve_sensor;
 mod resolve_shaft;
 mod resolve_solid;
-pub mod resolve_solid_mesh;
+mod resolve_solid_mesh;
 mod resolve_spring;
 pub mod resolved;
 pub mod rubber_problem;
@@ -80,6 +80,7 @@ pub use error::{Place, Problem, SceneError};
 pub use housing::HousedScene;
 pub use resolve::resolve;
 pub use resolve_solid::resolve_subject;
+pub use resolve_solid_mesh::{KEY_OF_DIMENSION, key_of_dimension};
 pub use resolved::{
     Assumption, Cage, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot, RaceDimensions, RunPlot,
     RunSettings, Scene,

@@ -87,8 +87,8 @@ impl Influence {
         Influence { grid, kernel }
     }
 
-    /// How deep the cells in `spans` sink under `pressure`, where each cell of the grid is `scale` times as large; others
-    /// are left as they are.
+    /// How deep the cells in `spans`, and up to seven behind each, sink under `pressure`, where each cell of the grid is
+    /// `scale` times as large; others are left as they are.
     ///
     /// Some cells of a row at a time, whose sums stay in registers while the kernel goes by; every sum is over the
     /// pressed cells in their order.
@@ -103,6 +103,7 @@ impl Influence {
                 let eights = (span.to - j).div_ceil(8).min((ny - j) / 8);
                 let row = &mut row[j..];
                 j += match eights {
+                    0 if ny - j >= 4 => self.fill::<4>(&pressed, i, j, row),
                     0 => self.fill::<1>(&pressed, i, j, row),
                     1 => self.fill::<8>(&pressed, i, j, row),
                     2 => self.fill::<16>(&pressed, i, j, row),
@@ -154,15 +155,16 @@ pub struct Pressed {
     pub load: f64,
     /// Stored energy over E*, m³.
     pub energy: f64,
+    /// Steps of conjugate gradients, and looks at the cells without pressure.
     pub iterations: usize,
 }
 
-/// Cells without pressure are looked at when the gaps of the others are this part of what they were at the last look:
-/// one in ten iterations, whose sums are three times as long as those over pressed cells alone.
+/// Cells without pressure are looked at when the gaps of the others are this part of what they were at the last look. Of a dent with
+/// a shoulder that is one iteration in ten, whose sums are three times as long as those over pressed cells alone.
 const LOOK: f64 = 0.05;
-/// Pressure of a cell that joins, in parts of what the last step would give it.
+/// Pressure of a cell that joins, in parts of what the last step would give it, or of what closes the gap of a cell alone.
 const JOINING: f64 = 1e-3;
-/// Iterations after which a solve is given up; tens are usual.
+/// Iterations after which a solve is given up, looks among them; tens are usual.
 const MOST_ITERATIONS: usize = 500;
 
 /// Presses a rigid surface of `gap`s (m, cell by cell, at no approach) into the half-space by `approach` (m).
@@ -187,7 +189,7 @@ pub fn press(
     }
     // A first pressure as of a cell by itself over the whole contact: far too small, but where it belongs.
     let mut p: Vec<f64> = match guess {
-        Some(guess) => guess.to_vec(),
+        Some(guess) => guess.iter().map(|p| p.max(0.0)).collect(),
         None => {
             let per_depth = 1.0 / (scale * (grid.nx as f64 * grid.hx + grid.ny as f64 * grid.hy));
             gap.iter().map(|gap| (approach - gap).max(0.0) * per_depth).collect()
@@ -209,7 +211,6 @@ pub fn press(
             square += r * r;
             worst = worst.max(r.abs());
         }
-        // NaN ends the search.
         if !f64::is_finite(square) {
             return None;
         }
@@ -221,7 +222,13 @@ pub fn press(
                 // The minimum, which what is left of the gaps changes to second order only.
                 let inside = gap.iter().zip(&sunk).map(|(gap, u)| approach - gap - 0.5 * u);
                 let energy = p.iter().zip(inside).map(|(p, inside)| p * inside).sum::<f64>() * area;
-                return Some(Pressed { load, energy, pressure: p, iterations: iteration });
+                // Cells that are not numbers are neither pressed nor open.
+                return (load + energy).is_finite().then_some(Pressed {
+                    load,
+                    energy,
+                    pressure: p,
+                    iterations: iteration,
+                });
             }
             // Overclosed cells without pressure join with hardly any, so that the first step does not send them away
             // again, and the directions begin anew.
@@ -230,12 +237,13 @@ pub fn press(
                 JOINING * if step > 0.0 { step } else { 1.0 / (scale * influence.kernel[0]) };
             for cell in 0..cells {
                 let r = open(cell, &sunk);
-                if p[cell] <= 0.0 && r < 0.0 {
+                if p[cell] <= 0.0 && r < -tolerance * overclosed {
                     p[cell] = -firmness * r;
                     change[cell] = p[cell];
                 }
             }
-            (spans, looked, everywhere) = (pressed_spans(&p, grid.ny), worst, false);
+            (spans, looked, everywhere) =
+                (pressed_spans(&p, grid.ny), worst.max(overclosed_now), false);
             if change.iter().any(|change| *change != 0.0) {
                 influence.sink(scale, &change, &spans, &mut q);
                 sunk.iter_mut().zip(&q).for_each(|(sunk, q)| *sunk += q);
@@ -260,7 +268,10 @@ pub fn press(
         }
         (step, conjugate) = (if under > 0.0 { over / under } else { 0.0 }, 1.0);
         change.fill(0.0);
-        for cell in (0..cells).filter(|cell| t[*cell] != 0.0) {
+        for cell in 0..cells {
+            if p[cell] <= 0.0 {
+                continue;
+            }
             p[cell] -= step * t[cell];
             sunk[cell] -= step * q[cell];
             if p[cell] < 0.0 {

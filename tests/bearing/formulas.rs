@@ -1,4 +1,4 @@
-//! Closed forms of the bearing of chapter 2.
+//! Closed forms of the bearing of chapter 2, and of the angles of (2.16).
 
 mod frequencies {
     use bearing_dynamics::ch2_housing::bearing::frequencies::*;

@@ -171,10 +171,13 @@ fn interrupted_by_a_signal_and_resumed() {
     assert_eq!(json(parts.join("summary.json")), summary);
 
     // What the scene says already, given once more: the command to go on has it as it was written.
-    let again = ["--resume", "--set", "numerics.step=2 us"];
+    let again = ["--resume", "--set", "numerics.step=2 us", "--set", "bearing.balls=8"];
     let (ended, message) = stopped(command(&scene, &parts, &again), 30, "-INT");
     assert_eq!(ended, Some(2));
-    assert!(message.contains(" --set \"numerics.step=2 us\" --resume"), "{message}");
+    assert!(
+        message.contains(" --set \"numerics.step=2 us\" --set \"bearing.balls=8\" --resume"),
+        "{message}"
+    );
     let output = run(&scene, &parts, &["--resume"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("resumed at t = "));

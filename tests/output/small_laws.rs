@@ -42,12 +42,12 @@ mod ticks {
 }
 
 mod canvas {
-    use bearing_dynamics::output::plots::canvas::*;
+    use bearing_dynamics::output::plots::{COLOURS, colour};
     use plotters::prelude::*;
 
     #[test]
     fn twenty_curves_differ_in_colour() {
-        for one in 0..21 {
+        for one in 0..3 * COLOURS.len() {
             for other in 0..one {
                 let far = |a: u8, b: u8| u32::from(a.abs_diff(b));
                 let (RGBColor(a, b, c), RGBColor(x, y, z)) = (colour(one), colour(other));
@@ -79,7 +79,7 @@ mod json {
 
     #[test]
     fn values_are_counted_outside_of_strings() {
-        assert_eq!(values(br#"{"a,[{\",": [1, 2, {}]}"#), 1 + 1 + 1 + 2 + 1);
+        assert_eq!(count_values(br#"{"a,[{\",": [1, 2, {}]}"#), 1 + 1 + 1 + 2 + 1);
         let list = |count: usize| format!("[{}0]", "0,".repeat(count - 1));
         assert!(parse(list(MOST_VALUES - 1).as_bytes()).is_ok());
         assert!(matches!(parse(list(MOST_VALUES).as_bytes()), Err(JsonError::TooMany)));

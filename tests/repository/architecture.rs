@@ -271,7 +271,7 @@ fn fused(source: &str) -> Vec<String> {
 /// Functions of the system's mathematics library, which picks its code by processor.
 fn system_functions(source: &str) -> Vec<String> {
     let code = code_only(source);
-    let laws = code.split("#[cfg(test)]").next().unwrap_or_default();
+    let laws = &code[..];
     ["sin", "cos", "tan", "sin_cos", "asin", "acos", "atan2", "exp", "ln", "powf", "cbrt", "hypot"]
         .iter()
         .flat_map(|name| {
@@ -280,6 +280,17 @@ fn system_functions(source: &str) -> Vec<String> {
                 .map(|at| format!("{}: `.{name}`", line_of(laws, at)))
                 .collect::<Vec<_>>()
         })
+        .collect()
+}
+
+/// The library and the command are compiled without a harness: a test among them would never run.
+fn tests_inside(source: &str) -> Vec<String> {
+    let code = code_only(source);
+    let attributes = ["#[test]", "cfg(test)"];
+    attributes
+        .iter()
+        .flat_map(|attribute| code.match_indices(attribute))
+        .map(|(at, found)| format!("{}: `{found}` belongs into tests/", line_of(&code, at)))
         .collect()
 }
 
@@ -409,6 +420,12 @@ fn results_do_not_depend_on_the_processor() {
         }
         found
     }));
+}
+
+#[test]
+fn tests_stand_in_their_folder() {
+    assert_none(in_source(|_, source| tests_inside(source)));
+    assert_eq!(tests_inside("fn a() {}\n#[cfg(test)]\nmod tests {\n#[test]\nfn b() {} }").len(), 2);
 }
 
 #[test]

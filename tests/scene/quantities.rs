@@ -59,7 +59,7 @@ mod excitations {
 }
 
 mod resolve_solid_mesh {
-    use bearing_dynamics::scene::resolve_solid_mesh::{KEY_OF_DIMENSION, key_of_dimension};
+    use bearing_dynamics::scene::{KEY_OF_DIMENSION, key_of_dimension};
 
     /// Every dimension that a generator may refuse leads to a key of a scene.
     #[test]

@@ -17,7 +17,7 @@ const TITLE_SIZE: i32 = 25;
 pub const TEXT_SIZE: i32 = 21;
 
 /// Okabe and Ito's colours without yellow, which is hard to see on white.
-const COLOURS: [RGBColor; 7] = [
+pub const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),

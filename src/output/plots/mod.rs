@@ -9,7 +9,7 @@
 //! Drawn for a width of 700 px and more, in the colours of Okabe and Ito that colour-blind readers
 //! can tell apart, with another marker for every curve.
 pub mod campbell;
-pub mod canvas;
+mod canvas;
 pub mod load_zone;
 pub mod orbit;
 pub mod polar;
@@ -17,6 +17,7 @@ pub mod ticks;
 pub mod xy;
 
 pub use campbell::campbell;
+pub use canvas::{COLOURS, colour};
 pub use load_zone::{LoadZone, load_zone};
 pub use orbit::{OrbitPlot, orbit};
 pub use polar::{PolarPlot, polar};

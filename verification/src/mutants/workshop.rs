@@ -194,12 +194,13 @@ impl Workshop {
         Ok((ran, clock.elapsed().as_secs_f64()))
     }
 
-    /// Builds library and command as the copy has them; the compiler's messages where they do not build.
+    /// Builds library and command as the copy has them and as tests want them; the compiler's messages where
+    /// they do not build.
     ///
     /// # Errors
     /// When cargo cannot be started at all.
     pub fn compiles(&self) -> Result<Result<(), String>, String> {
-        let output = self.cargo(&["build", "--lib", "--bins"], "json")?;
+        let output = self.cargo(&["test", "--no-run", "--lib", "--bins"], "json")?;
         let messages = || String::from_utf8_lossy(&output.stdout).into_owned();
         Ok(if output.status.success() { Ok(()) } else { Err(messages()) })
     }
