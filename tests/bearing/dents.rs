@@ -16,7 +16,7 @@ use bearing_dynamics::solver::dynamics::run::{Integrator, Stepping};
 use bearing_dynamics::solver::dynamics::start;
 use bearing_dynamics::solver::dynamics::state::{POSITION, VELOCITY};
 use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::half_space::love;
+use bearing_dynamics::solver::half_space::{Grid, Influence, love, press};
 use std::sync::OnceLock;
 
 fn table_3_5() -> BearingGeometry {
@@ -155,6 +155,59 @@ fn the_table_says_what_the_half_space_does() {
             }
         }
     }
+}
+
+/// From any guess the same pressure, no gap beyond the tolerance, in few iterations; what is not a number is no contact.
+#[test]
+fn a_contact_does_not_depend_on_its_guess() {
+    let grid = Grid { nx: 12, ny: 6, hx: 1.0, hy: 0.8, mirrored: true };
+    let influence = Influence::new(grid);
+    // A bowl with a step, so that cells in the middle carry nothing.
+    let gap = |cell: usize| {
+        let [x, y] = grid.middle(cell);
+        0.01 * (x * x + y * y) + if x * x + y * y < 3.0 { 0.1 } else { 0.0 }
+    };
+    let gaps: Vec<f64> = (0..grid.cells()).map(gap).collect();
+    let (approach, tolerance) = (0.2, 1e-9);
+    let pressed = |gaps: &[f64], guess: Option<&[f64]>| {
+        press(&influence, 1.0, gaps, approach, guess, tolerance)
+    };
+    let plain = pressed(&gaps, None).unwrap();
+    let largest = plain.pressure.iter().copied().fold(0.0, f64::max);
+    assert!(plain.pressure.iter().any(|p| *p == 0.0) && largest > 0.0);
+    let guesses: [&dyn Fn(usize) -> f64; 5] =
+        [&|_| 0.0, &|_| 10.0, &|_| -1.0, &|_| f64::NAN, &|cell| {
+            [1e-6, 3.0, 0.0, 0.2][cell * 7 % 4]
+        }];
+    for (number, guess) in guesses.into_iter().enumerate() {
+        let guess: Vec<f64> = (0..grid.cells()).map(guess).collect();
+        let found = pressed(&gaps, Some(&guess)).unwrap();
+        assert!(found.iterations <= 120, "{number}: {}", found.iterations);
+        for (one, other) in found.pressure.iter().zip(&plain.pressure) {
+            // Gaps of 1e-9 over the stiffness of a cell by itself, ten times.
+            assert!((one - other).abs() <= 1e-7 * largest, "{number}: {one} {other}");
+        }
+        assert!((found.energy / plain.energy - 1.0).abs() <= 1e-12, "{number}");
+    }
+    // Love's sums for every cell: nothing is pressed and open, nothing overlaps.
+    let sunk = |cell: usize| {
+        let [x, y] = grid.middle(cell);
+        let of = |other: usize| {
+            let ([a, b], p) = (grid.middle(other), plain.pressure[other]);
+            p * (love(x - a, y - b, 0.5, 0.4) + love(x - a, y + b, 0.5, 0.4))
+        };
+        (0..grid.cells()).map(of).sum::<f64>()
+    };
+    for cell in 0..grid.cells() {
+        let open = gaps[cell] + sunk(cell) - approach;
+        let allowed = tolerance * approach;
+        let closed = if plain.pressure[cell] > 0.0 { open.abs() } else { -open };
+        assert!(closed <= allowed, "{cell}: {open}");
+    }
+    let mut broken = gaps.clone();
+    broken[29] = f64::NAN;
+    assert!(pressed(&broken, None).is_none());
+    assert!(press(&influence, f64::NAN, &gaps, approach, None, tolerance).is_none());
 }
 
 /// A shoulder of a micrometre takes finer cells, or the load in the middle changes by a tenth of what it should.
