@@ -46,6 +46,9 @@ pub(super) fn centre_of_round(problem: &SolidProblem) -> Result<Vec3, SolidShaft
     Ok(centre)
 }
 
+/// Fields of a component that lie side by side while the masses of a pair of nodes go by once for all of them.
+const BESIDE: usize = 16;
+
 /// Consistent masses times displacements.
 pub(super) fn momenta(problem: &SolidProblem, fields: &DMatrix<f64>) -> DMatrix<f64> {
     let SolidProblem { nodes, density, elements, .. } = problem;
@@ -67,21 +70,25 @@ pub(super) fn momenta(problem: &SolidProblem, fields: &DMatrix<f64>) -> DMatrix<
             }
         }
     }
-    // All fields of a component side by side: the masses of a pair of nodes go by once for all of them.
-    let (from, mut momenta) =
-        (fields.transpose(), DMatrix::<f64>::zeros(fields.ncols(), fields.nrows()));
-    let mut shares = shares.iter();
-    for element in 0..elements.len() {
-        for a in elements.nodes(element) {
-            for (b, share) in elements.nodes(element).iter().zip(shares.by_ref()) {
-                for i in 0..3 {
-                    let (to, of) = (3 * *a as usize + i, 3 * *b as usize + i);
-                    momenta.column_mut(to).axpy(*share, &from.column(of), 1.0);
+    let mut momenta = DMatrix::zeros(fields.nrows(), fields.ncols());
+    for first in (0..fields.ncols()).step_by(BESIDE) {
+        let count = BESIDE.min(fields.ncols() - first);
+        let from = fields.columns(first, count).transpose();
+        let mut to = DMatrix::<f64>::zeros(count, fields.nrows());
+        let mut shares = shares.iter();
+        for element in 0..elements.len() {
+            for a in elements.nodes(element) {
+                for (b, share) in elements.nodes(element).iter().zip(shares.by_ref()) {
+                    for i in 0..3 {
+                        let (at, of) = (3 * *a as usize + i, 3 * *b as usize + i);
+                        to.column_mut(at).axpy(*share, &from.column(of), 1.0);
+                    }
                 }
             }
         }
+        momenta.columns_mut(first, count).copy_from(&to.transpose());
     }
-    momenta.transpose()
+    momenta
 }
 
 /// A shaft whose two planes differ.
