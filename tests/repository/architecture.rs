@@ -271,13 +271,12 @@ fn fused(source: &str) -> Vec<String> {
 /// Functions of the system's mathematics library, which picks its code by processor.
 fn system_functions(source: &str) -> Vec<String> {
     let code = code_only(source);
-    let laws = &code[..];
     ["sin", "cos", "tan", "sin_cos", "asin", "acos", "atan2", "exp", "ln", "powf", "cbrt", "hypot"]
         .iter()
         .flat_map(|name| {
-            words(laws, name)
-                .filter(|&at| at > 0 && laws.as_bytes()[at - 1] == b'.')
-                .map(|at| format!("{}: `.{name}`", line_of(laws, at)))
+            words(&code, name)
+                .filter(|&at| at > 0 && code.as_bytes()[at - 1] == b'.')
+                .map(|at| format!("{}: `.{name}`", line_of(&code, at)))
                 .collect::<Vec<_>>()
         })
         .collect()
