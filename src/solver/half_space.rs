@@ -115,6 +115,20 @@ impl Influence {
         }
     }
 
+    /// Adds what a change of pressure does to the cells in `spans`, by way of `by`; others are worth nothing until all are
+    /// summed again.
+    fn sink_further(
+        &self,
+        scale: f64,
+        change: &[f64],
+        spans: &[Span],
+        by: &mut [f64],
+        sunk: &mut [f64],
+    ) {
+        self.sink(scale, change, spans, by);
+        sunk.iter_mut().zip(by.iter()).for_each(|(sunk, by)| *sunk += by);
+    }
+
     /// The next `N` cells of a row; how many they are.
     fn fill<const N: usize>(
         &self,
@@ -245,8 +259,7 @@ pub fn press(
             (spans, looked, everywhere) =
                 (pressed_spans(&p, grid.ny), worst.max(overclosed_now), false);
             if change.iter().any(|change| *change != 0.0) {
-                influence.sink(scale, &change, &spans, &mut q);
-                sunk.iter_mut().zip(&q).for_each(|(sunk, q)| *sunk += q);
+                influence.sink_further(scale, &change, &spans, &mut q, &mut sunk);
                 conjugate = 0.0;
                 continue;
             }
@@ -280,8 +293,7 @@ pub fn press(
         }
         // What pulled lets go, and the directions begin anew.
         if conjugate == 0.0 {
-            influence.sink(scale, &change, &spans, &mut q);
-            sunk.iter_mut().zip(&q).for_each(|(sunk, q)| *sunk += q);
+            influence.sink_further(scale, &change, &spans, &mut q, &mut sunk);
         }
     }
     None
