@@ -33,6 +33,8 @@ pub struct BallSet {
     pub table: ContactTable,
     /// Damping factor of each pair in s/m; zero without damping.
     pub damping: Vec<f64>,
+    /// Cosine and sine of each pocket's angle on its cage; they turn with it from where the balls started.
+    pocket_angles: Vec<[f64; 2]>,
     /// Contacts of the cage with each ball, then with the guiding race at both ends.
     pub pockets: Vec<CageContact>,
     pub guides: [CageContact; 2],
@@ -106,6 +108,9 @@ impl BallSet {
             steps,
             table: ContactTable::new(&layout),
             damping: vec![alpha; 2 * layout.padded],
+            pocket_angles: (0..layout.balls)
+                .map(|ball| pocket_angle(bearing, &layout, ball))
+                .collect(),
             pockets: vec![CageContact::default(); layout.balls],
             guides: [CageContact::default(); 2],
             meetings: vec![BallContact::default(); meetings],
@@ -322,9 +327,7 @@ impl BallSet {
         let [e2, e3]: [Vec3; 2] =
             [(orientation * Vector3::y()).into(), (orientation * Vector3::z()).into()];
         for ball in 0..self.layout.balls {
-            // Pocket directions turn with the cage from where the balls started.
-            let angle = bearing.ball_phase + TAU * ball as f64 / self.layout.balls as f64;
-            let (sin, cos) = libm::sincos(angle);
+            let [cos, sin] = self.pocket_angles[ball];
             let towards = add(scale(e2, cos), scale(e3, sin));
             let motion = AxisMotion {
                 position: self.layout.ball_vector(state, POSITION, ball),
@@ -395,6 +398,11 @@ impl BallSet {
         }
         changed
     }
+}
+
+fn pocket_angle(bearing: &Bearing, layout: &Layout, ball: usize) -> [f64; 2] {
+    let (sin, cos) = libm::sincos(bearing.ball_phase + TAU * ball as f64 / layout.balls as f64);
+    [cos, sin]
 }
 
 /// Index of the race that guides a cage; `None` where balls do.

@@ -25,6 +25,7 @@ fn ball_motion(layout: &Layout, state: &[f64], ball: usize) -> Motion {
     }
 }
 
+#[inline(always)]
 fn race_motion(now: &RaceNow) -> Motion {
     Motion { position: now.motion.position, velocity: now.motion.velocity, spin: now.motion.spin }
 }
@@ -38,7 +39,8 @@ fn reach(laws: &ContactLaws, overlap: f64) -> f64 {
 #[inline(always)]
 fn patch(laws: &ContactLaws, race: usize, overlap: f64) -> Patch {
     let semi_major = laws.races[race].semi_major_factor * overlap.sqrt();
-    let semi_minor = semi_major / laws.races[race].ellipticity;
+    let semi_minor =
+        if laws.slices.across { semi_major / laws.races[race].ellipticity } else { 0.0 };
     Patch { semi_major, semi_minor, curvature: laws.curvature[race] }
 }
 
@@ -71,8 +73,9 @@ pub(super) fn traction_plain(
     want: Want,
     table: &mut ContactTable,
 ) {
-    let motions = races.map(race_motion);
-    let axes = races.map(|now| now.motion.axis);
+    // Pair by pair: `map` hands an array of so many numbers on through several copies.
+    let motions = [race_motion(races[0]), race_motion(races[1])];
+    let axes = [races[0].motion.axis, races[1].motion.axis];
     for &pair in &table.active {
         let (race, _) = layout.race_and_ball(pair);
         let contact = &table.contact[pair];
@@ -157,8 +160,9 @@ fn lanes_of<const SLOPES: bool>(
         impl Fn(f64, f64, f64) -> Steepness + Copy,
     ),
 ) {
-    let motions = races.map(race_motion);
-    let axes = races.map(|now| now.motion.axis);
+    // Pair by pair: `map` hands an array of so many numbers on through several copies.
+    let motions = [race_motion(races[0]), race_motion(races[1])];
+    let axes = [races[0].motion.axis, races[1].motion.axis];
     let ContactTable { contact, load, traction, sliding, slope, active, .. } = table;
     for block in active.chunks(LANES) {
         let mut slip = [[0.0; LANES]; 2];
@@ -178,8 +182,12 @@ fn lanes_of<const SLOPES: bool>(
             patches.put(l, patch(laws, race, contact[pair].overlap));
             sliding[pair] = here;
         }
-        let (sums, steep) =
-            slice_lanes::<SLOPES>(laws, &slip, &spin, &patches, &rolling, (friction, slopes));
+        let of_law = (friction, slopes);
+        let (sums, steep) = if laws.slices.across {
+            slice_lanes::<SLOPES, true>(laws, &slip, &spin, &patches, &rolling, of_law)
+        } else {
+            slice_lanes::<SLOPES, false>(laws, &slip, &spin, &patches, &rolling, of_law)
+        };
         for (l, &pair) in block.iter().enumerate() {
             if SLOPES {
                 slope[pair] = steep[l];
@@ -218,7 +226,7 @@ impl Patches {
 
 /// All slices of a block of contacts.
 #[inline(always)]
-fn slice_lanes<const SLOPES: bool>(
+fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
     laws: &ContactLaws,
     slip: &[[f64; LANES]; 2],
     spin: &[[f64; LANES]; 3],
@@ -255,7 +263,7 @@ fn slice_lanes<const SLOPES: bool>(
             let here = [slip[0][l], slip[1][l]];
             let turning = [spin[0][l], spin[1][l], spin[2][l]];
             let friction = |square, share| friction(square, share, prepared[l]);
-            let after = add_slice(&before, here, turning, point, share, friction);
+            let after = add_slice::<ACROSS>(&before, here, turning, point, share, friction);
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;
             moment[l] = after.moment;
@@ -265,7 +273,7 @@ fn slice_lanes<const SLOPES: bool>(
                 let before = [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]];
                 let slopes = |square, share| slopes(square, share, prepared[l]);
                 [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]] =
-                    add_slope(&before, here, turning, point, share, slopes);
+                    add_slope::<ACROSS>(&before, here, turning, point, share, slopes);
             }
         }
     }
