@@ -39,8 +39,7 @@ fn reach(laws: &ContactLaws, overlap: f64) -> f64 {
 #[inline(always)]
 fn patch(laws: &ContactLaws, race: usize, overlap: f64) -> Patch {
     let semi_major = laws.races[race].semi_major_factor * overlap.sqrt();
-    let semi_minor =
-        if laws.slices.across { semi_major / laws.races[race].ellipticity } else { 0.0 };
+    let semi_minor = semi_major / laws.races[race].ellipticity;
     Patch { semi_major, semi_minor, curvature: laws.curvature[race] }
 }
 
@@ -179,7 +178,7 @@ fn lanes_of<const SLOPES: bool>(
                 spin[i][l] = here.relative_spin[i];
             }
             rolling[l] = prepare(here.entrainment);
-            patches.put(l, patch(laws, race, contact[pair].overlap));
+            patches.put(l, laws.slices.across, patch(laws, race, contact[pair].overlap));
             sliding[pair] = here;
         }
         let of_law = (friction, slopes);
@@ -208,9 +207,12 @@ struct Patches {
 
 impl Patches {
     #[inline(always)]
-    fn put(&mut self, lane: usize, patch: Patch) {
+    fn put(&mut self, lane: usize, across: bool, patch: Patch) {
         self.semi_major[lane] = patch.semi_major;
-        self.semi_minor[lane] = patch.semi_minor;
+        // A division that only points beside the middle of a slice need.
+        if across {
+            self.semi_minor[lane] = patch.semi_minor;
+        }
         self.curvature[lane] = patch.curvature;
     }
 
