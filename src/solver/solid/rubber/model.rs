@@ -229,14 +229,22 @@ fn patches(problem: &RubberProblem, tets: &[Tet10]) -> (Vec<Patch>, Vec<[u32; 4]
         for (corner, (patch, volume)) in (0u8..).zip(of.into_iter().zip(volumes)) {
             let patch = &mut patches[patch as usize];
             patch.elements.push((element, corner));
-            patch.nodes.extend_from_slice(nodes);
             patch.volume += volume;
         }
         patches_of.push(of);
     }
-    for patch in &mut patches {
-        patch.nodes.sort_unstable();
-        patch.nodes.dedup();
+    // The last patch that has taken a node: most nodes come several times.
+    let mut taken_by = vec![u32::MAX; problem.nodes.len()];
+    for (patch, of) in (0u32..).zip(&mut patches) {
+        for &node in
+            of.elements.iter().flat_map(|(element, _)| &problem.elements[*element as usize])
+        {
+            if taken_by[node as usize] != patch {
+                taken_by[node as usize] = patch;
+                of.nodes.push(node);
+            }
+        }
+        of.nodes.sort_unstable();
     }
     (patches, patches_of)
 }
