@@ -1,8 +1,8 @@
 //! NumPy's `.npy` files of real numbers, read with nothing believed: no memory is taken for what a
 //! header promises and the file does not hold.
 //!
-//! Own code, because the crate that writes them allocates the length of a header before it reads it,
-//! and descends into its brackets as deep as they go.
+//! Own code: the crate for them allocates the length of a header before it reads it, and descends into its brackets as deep as
+//! they go; what it would write are thirty bytes of text before the numbers, for a dozen crates to compile.
 
 use ndarray::{Array2, ShapeBuilder};
 use thiserror::Error;
@@ -35,6 +35,34 @@ pub enum NpyError {
         "a table of {rows} rows and {columns} columns does not take the {bytes} bytes that follow"
     )]
     Length { rows: usize, columns: usize, bytes: usize },
+}
+
+/// Numbers begin at multiples of this, bytes, so that they may be mapped into memory.
+const ALIGNED: usize = 64;
+
+/// A file of a table: version 1.0, little-endian f64, row by row.
+///
+/// ```
+/// use bearing_dynamics::output::npy;
+/// let table = ndarray::array![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+/// let file = npy::file(&table);
+/// assert_eq!(file.len(), 128 + 6 * 8);
+/// assert_eq!(npy::parse(&file).unwrap(), table);
+/// ```
+pub fn file(table: &Array2<f64>) -> Vec<u8> {
+    let (rows, columns) = table.dim();
+    let says =
+        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
+    let start = b"\x93NUMPY\x01\x00";
+    let before = start.len() + size_of::<u16>();
+    // Blanks up to a line break, which is part of the header.
+    let length = (before + says.len() + 1).next_multiple_of(ALIGNED) - before;
+    let mut bytes = Vec::with_capacity(before + length + 8 * table.len());
+    bytes.extend_from_slice(start);
+    bytes.extend((length as u16).to_le_bytes());
+    bytes.extend(format!("{says:<0$}\n", length - 1).bytes());
+    bytes.extend(table.iter().flat_map(|value| value.to_le_bytes()));
+    bytes
 }
 
 /// A table of one (then a column) or two dimensions, f64 or f32, in either memory order.

@@ -8,7 +8,6 @@ use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::npy::{self, MOST_COLUMNS, NpyError};
 use crate::scene::input_file::{self, InputError, LARGEST_DATA, LARGEST_JSON};
 use ndarray::Array2;
-use ndarray_npy::{WriteNpyError, WriteNpyExt};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -65,8 +64,6 @@ pub enum SeriesError {
     NotFinite { row: usize, column: String, value: f64 },
     #[error(transparent)]
     Write(#[from] WriteError),
-    #[error("cannot encode {}: {source}", path.display())]
-    Encode { path: PathBuf, source: WriteNpyError },
     #[error("cannot read {}: {source}", path.display())]
     Read { path: PathBuf, source: InputError },
     #[error("{} is not a CSV table: {source}", path.display())]
@@ -193,16 +190,11 @@ impl Series {
     /// As [`Series::write_csv`].
     pub fn write_npy(&self, path: &Path) -> Result<(), SeriesError> {
         self.check_finite()?;
-        let mut bytes = Vec::new();
-        self.data
-            .as_standard_layout()
-            .write_npy(&mut bytes)
-            .map_err(|source| SeriesError::Encode { path: path.to_path_buf(), source })?;
         let columns_path = columns_path(path);
         let columns = serde_json::to_string_pretty(&self.columns)
             .map_err(|source| SeriesError::ColumnsFile { path: columns_path.clone(), source })?;
         write_atomic(&columns_path, columns.as_bytes())?;
-        Ok(write_atomic(path, &bytes)?)
+        Ok(write_atomic(path, &npy::file(&self.data))?)
     }
 
     /// Reads a NumPy file of one or two dimensions, f64 or f32, in either memory order. Without

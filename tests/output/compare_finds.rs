@@ -7,6 +7,7 @@ use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::compare::{
     CompareError, Comparison, DivergenceKind, Options, compare, is_ignored_by_name, report, to_json,
 };
+use bearing_dynamics::output::npy;
 use bearing_dynamics::output::results::write_static_results;
 use bearing_dynamics::output::series::Series;
 use output_common::{run, solution};
@@ -121,7 +122,7 @@ fn every_cell_of_the_series_is_watched_in_csv_and_npy() {
                             let altered = Series::new(series.columns().to_vec(), data).unwrap();
                             fs::write(&given, altered.to_csv().unwrap()).unwrap();
                         }
-                        _ => ndarray_npy::write_npy(&given, &data).unwrap(),
+                        _ => fs::write(&given, npy::file(&data)).unwrap(),
                     }
                     compared(&expected, &given, class)
                 };
@@ -257,11 +258,10 @@ fn nan_and_infinity_differ_even_from_themselves() {
 
 #[test]
 fn nan_in_a_npy_candidate_fails() {
-    use ndarray_npy::write_npy;
     let (_root, reference, candidate) = pair();
     let mut data = Series::read_npy(&reference.join("series.npy")).unwrap().data().clone();
     data[(7, 22)] = f64::NAN;
-    write_npy(candidate.join("series.npy"), &data).unwrap();
+    fs::write(candidate.join("series.npy"), npy::file(&data)).unwrap();
     let result = compared(&reference, &candidate, ToleranceClass::Mixed);
     let first = result.first_divergence.unwrap();
     assert_eq!((first.file.as_str(), first.place.as_str()), ("series.npy", "row 8 (ball 8)"));

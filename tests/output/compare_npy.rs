@@ -6,6 +6,7 @@ use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::compare::{Options, compare};
 use bearing_dynamics::output::npy::{self, NpyError};
 use bearing_dynamics::output::series::Series;
+use ndarray::Array2;
 use std::fs;
 
 #[test]
@@ -41,6 +42,28 @@ fn a_header_that_promises_too_much_is_refused_without_allocating() {
         fs::write(&path, bytes).unwrap();
         let error = compare(&path, &path, &Options::default()).unwrap_err().to_string();
         assert!(error.contains("header claims 4294967295 bytes"), "{error}");
+    }
+}
+
+/// As NumPy's `save` has it: what it says of the table, blanks and a break up to a multiple of 64 bytes, then the numbers row by row.
+#[test]
+fn npy_is_written_as_numpy_writes_it() {
+    let tables = [(2, 3), (7, 1), (0, 4), (123_456, 1)];
+    for (rows, columns) in tables {
+        // By columns in memory.
+        let table = Array2::from_shape_fn((columns, rows), |(j, i)| i as f64 - 0.25 * j as f64);
+        let file = npy::file(&table.reversed_axes());
+        let says =
+            format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
+        let mut header = [&b"\x93NUMPY\x01\0\x76\0"[..], says.as_bytes()].concat();
+        header.resize(127, b' ');
+        header.push(b'\n');
+        assert!(file.starts_with(&header), "{rows} {columns}");
+        let numbers =
+            file[128..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
+        let expected =
+            (0..rows).flat_map(|i| (0..columns).map(move |j| i as f64 - 0.25 * j as f64));
+        assert!(numbers.eq(expected) && file.len() == 128 + 8 * rows * columns);
     }
 }
 
@@ -114,8 +137,14 @@ fn npy_without_names_takes_those_of_the_reference() {
     let npy = candidate.join("series.npy");
     assert!(compared(&csv, &npy, ToleranceClass::F64Exact).equal);
     // f32, as a graphics processor would write it.
-    let single = Series::read_npy(&npy).unwrap().data().mapv(|value| value as f32);
-    ndarray_npy::write_npy(&npy, &single).unwrap();
+    let double = fs::read(&npy).unwrap();
+    let header = 10 + usize::from(u16::from_le_bytes([double[8], double[9]]));
+    let words = String::from_utf8_lossy(&double[10..header]).replace("<f8", "<f4");
+    let numbers =
+        double[header..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
+    let single = numbers.flat_map(|number| (number as f32).to_le_bytes());
+    let single = [&double[..10], words.as_bytes(), &single.collect::<Vec<u8>>()].concat();
+    fs::write(&npy, single).unwrap();
     assert!(compared(&csv, &npy, ToleranceClass::Mixed).equal);
     assert!(!compared(&csv, &npy, ToleranceClass::F64Reordered).equal);
 }

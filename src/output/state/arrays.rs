@@ -2,11 +2,11 @@
 
 use super::{StateError, entries::Refused, friction_entry};
 use crate::output::atomic::write_atomic;
+use crate::output::npy;
 use crate::output::series::Series;
 use crate::output::session::Checkpoint;
 use crate::solver::solid::checkpoint::SolidCheckpoint;
 use ndarray::{Array2, Axis, Slice};
-use ndarray_npy::WriteNpyExt;
 use std::ops::Range;
 use std::path::Path;
 
@@ -68,11 +68,7 @@ pub(super) fn write_table(
     }
     let table = Array2::from_shape_vec((values.len() / width, width), values)
         .expect("as many numbers for each node");
-    let mut bytes = Vec::new();
-    table
-        .write_npy(&mut bytes)
-        .map_err(|source| StateError::Encode { path: path.clone(), source })?;
-    Ok(write_atomic(&path, &bytes)?)
+    Ok(write_atomic(&path, &npy::file(&table))?)
 }
 
 fn of_nodes(checkpoint: &SolidCheckpoint) -> Vec<f64> {

@@ -117,8 +117,6 @@ pub enum StateError {
     Past { time: f64, end: f64 },
     #[error("{what} is {value}; only finite numbers are kept in a state")]
     NotFinite { what: &'static str, value: f64 },
-    #[error("cannot encode {}: {source}", path.display())]
-    Encode { path: PathBuf, source: ndarray_npy::WriteNpyError },
     #[error(transparent)]
     Journal(#[from] JournalError),
     #[error(transparent)]
