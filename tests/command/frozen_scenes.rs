@@ -14,17 +14,19 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// Ends of runs that are cut so that all scenes take some seconds together.
-const CUT: [(&str, &str, &str); 11] = [
+const CUT: [(&str, &str, &str); 13] = [
     ("cage_600rpm", "3.12144 s", "5 ms"),
     ("cage_telemeter", "1.5 s", "20 ms"),
     ("impact", "60 ms", "6 ms"),
     ("bar_impact", "0.4 ms", "0.05 ms"),
+    ("bushing_radial", "0.225 s", "0.05 s"),
     ("creep_on_rubber", "30 s", "0.2 s"),
     ("dented_on_bushing", "60 ms", "10 ms"),
     ("rotating_load_orbit", "1.3 s", "50 ms"),
     ("rotor_in_elements", "5 ms", "0.3 ms"),
     ("settling", "0.2 s", "50 ms"),
     ("spinning_disc", "12 ms", "1 ms"),
+    ("stepped_rotor", "0.3 s", "0.05 s"),
     ("varying_compliance_run", "0.4 s", "50 ms"),
 ];
 
