@@ -20,7 +20,7 @@ use crate::motion::RPM;
 use crate::solids::{Vec3, largest};
 use crate::surface_picture::{SurfacePicture, surface_picture};
 
-mod oracle;
+pub mod oracle;
 mod press_fit;
 
 pub const CASE: Case = Case {

@@ -18,7 +18,7 @@ use crate::pressed_block::{BlockShape, DepthFaces, PressedBlock, line_contact, p
 use crate::solids::{Material, Vec3, largest, size_of};
 use crate::surface_picture::{SurfacePicture, surface_picture};
 
-mod oracle;
+pub mod oracle;
 
 pub const CASE: Case = Case {
     id: "cylinder_on_block_table_2_1",

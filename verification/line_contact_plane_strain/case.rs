@@ -18,7 +18,7 @@ use crate::pressed_block::{
 };
 use crate::solids::{STEEL, Vec3, largest, name_of, size_of};
 
-mod oracle;
+pub mod oracle;
 
 pub const CASE: Case = Case {
     id: "line_contact_plane_strain",

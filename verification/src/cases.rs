@@ -5,7 +5,7 @@
 use crate::case::{Case, Tier};
 
 #[path = "../assembly_fits_2_4_1/case.rs"]
-mod assembly_fits_2_4_1;
+pub mod assembly_fits_2_4_1;
 #[path = "../axial_load_closed_form/case.rs"]
 mod axial_load_closed_form;
 #[path = "../bearing_conservation/case.rs"]
@@ -41,7 +41,7 @@ mod cantilever_timoshenko;
 #[path = "../critical_speed_4_3_4/case.rs"]
 mod critical_speed_4_3_4;
 #[path = "../cylinder_on_block_table_2_1/case.rs"]
-mod cylinder_on_block_table_2_1;
+pub mod cylinder_on_block_table_2_1;
 #[path = "../dent_3_4_4/case.rs"]
 mod dent_3_4_4;
 #[path = "../flexible_shaft_4_3_3/case.rs"]
@@ -63,7 +63,7 @@ mod housing_settling;
 #[path = "../kinematic_frequencies/case.rs"]
 mod kinematic_frequencies;
 #[path = "../line_contact_plane_strain/case.rs"]
-mod line_contact_plane_strain;
+pub mod line_contact_plane_strain;
 #[path = "../misalignment_moment/case.rs"]
 mod misalignment_moment;
 #[path = "../misalignment_on_bushing_3_4_5/case.rs"]

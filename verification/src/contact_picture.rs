@@ -79,7 +79,7 @@ fn along_the_axis(panel: &Panel) -> Vec<Arrow> {
 }
 
 /// Edges of the front face that belong to one of its faces only, as runs of nodes.
-fn outline(mesh: &TetMesh) -> Vec<Vec<u32>> {
+pub fn outline(mesh: &TetMesh) -> Vec<Vec<u32>> {
     let Ok(front) = mesh.surface_set("x_high") else { return Vec::new() };
     let mut edges: BTreeMap<[u32; 2], (usize, Vec<u32>)> = BTreeMap::new();
     for &face in front {
@@ -154,35 +154,5 @@ fn draw(svg: &mut String, panel: &Panel, forces: &[Arrow], strongest: f64, [left
             svg,
             "<path d=\"M{x2:.1} {y2:.1}L{ax:.1} {ay:.1}L{bx:.1} {by:.1}Z\" fill=\"{colour}\"/>"
         );
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
-
-    #[test]
-    fn an_arrow_for_each_force_that_shows() {
-        let body = Ring { inner_radius: 0.03, outer_radius: 0.04, width: 0.01 };
-        let cells = RingMesh { around: 12, radial: 1, axial: 1, radial_growth: 1.0 };
-        let mesh = ring(&body, &cells).unwrap().mesh;
-        // Front and back of the bore at the same place, another place, and a node without force.
-        let at = |x: f64, y: f64, z: f64| {
-            let far = |p: &Vec3| (p[0] - x).abs() + (p[1] - y).abs() + (p[2] - z).abs();
-            mesh.nodes.iter().position(|p| far(p) < 1e-9).unwrap() as u32
-        };
-        let forces = vec![
-            (at(-0.005, 0.03, 0.0), [0.0, 2.0, 0.0]),
-            (at(0.005, 0.03, 0.0), [0.0, 1.0, 0.0]),
-            (at(0.005, 0.0, 0.03), [0.0, 0.0, 1.0]),
-            (at(0.005, -0.03, 0.0), [0.0; 3]),
-        ];
-        let displacement = vec![[0.0; 3]; mesh.nodes.len()];
-        let panel = Panel { title: "ring".into(), displacement, forces, mesh: &mesh };
-        assert_eq!(outline(&mesh).len(), 24);
-        let svg = contact_picture(&[panel], 1);
-        assert_eq!(svg.matches("Z\" fill=").count(), 2);
-        assert!(svg.contains("longest arrow: 3.0 N") && !svg.contains("NaN"));
     }
 }

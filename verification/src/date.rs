@@ -35,7 +35,7 @@ fn seconds_since_epoch() -> u64 {
 }
 
 /// Year, month and day of the Gregorian calendar from days since 1970-01-01.
-fn civil(days: u64) -> (u64, u64, u64) {
+pub fn civil(days: u64) -> (u64, u64, u64) {
     let leap =
         |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
     let (mut year, mut rest) = (1970, days);
@@ -53,26 +53,4 @@ fn civil(days: u64) -> (u64, u64, u64) {
         month += 1;
     }
     (year, month, rest + 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{civil, is_day, today};
-
-    #[test]
-    fn known_days() {
-        // Unix times of midnight, divided by 86 400.
-        assert_eq!(civil(0), (1970, 1, 1));
-        assert_eq!(civil(951_782_400 / 86_400), (2000, 2, 29));
-        assert_eq!(civil(1_704_067_200 / 86_400), (2024, 1, 1));
-        assert_eq!(civil(4_107_542_400 / 86_400), (2100, 3, 1));
-    }
-
-    #[test]
-    fn days_are_told_from_other_text() {
-        assert!(is_day(&today()) && is_day("2026-11-20"));
-        for text in ["", "2026-11", "2026-13-01", "2026-1-01", "20.11.2026", "2026-11-20 "] {
-            assert!(!is_day(text), "{text}");
-        }
-    }
 }

@@ -215,22 +215,3 @@ pub fn line_contact(block: &PressedBlock, forces: &[(ContactNode, Vec3)]) -> Lin
     let half_width = ((x - y / slope) / n).sqrt();
     LineContact { load, profile, shares, peak, half_width }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn crest_of_a_cubic_is_its_own() {
-        // Upright at 0.7, where it is 2; bends up further on.
-        let curve: Vec<[f64; 2]> = (0..40)
-            .map(|i| {
-                let x = 0.05 * f64::from(i);
-                let s: f64 = x - 0.7;
-                [x, 2.0 - s * s + 0.4 * s * s * s]
-            })
-            .collect();
-        let [at, height] = crest(&curve, [0.4, 1.2]);
-        assert!((at - 0.7).abs() <= 1e-9 && (height - 2.0).abs() <= 1e-9, "{at} {height}");
-    }
-}

@@ -235,34 +235,3 @@ fn short(value: f64, range: f64) -> String {
     let places = if range > 0.0 { (2.0 - range.log10().floor()).clamp(0.0, 6.0) } else { 2.0 };
     format!("{value:.*}", places as usize)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use bearing_dynamics::mesh::generate::bar;
-
-    #[test]
-    fn a_cube_shows_three_of_its_sides() {
-        let mesh = bar([1.0, 1.0, 1.0], [1, 1, 1]).unwrap().quadratic().unwrap().mesh;
-        let values: Vec<f64> = mesh.nodes.iter().map(|x| x[2]).collect();
-        let moved = vec![[0.1, 0.0, 0.0]; values.len()];
-        let mut picture = SurfacePicture {
-            mesh: &mesh,
-            displacement: &[],
-            values: &values,
-            label: "height, m",
-            azimuth: 30.0,
-            elevation: 20.0,
-        };
-        let svg = surface_picture(&picture);
-        // Three sides of two faces of four triangles, and the empty path of edges.
-        assert_eq!(svg.matches("<path d=").count(), 3 * 2 * 4);
-        assert!(svg.contains(">-0.50<") && svg.contains(">0.50<") && !svg.contains("NaN"));
-        picture.displacement = &moved;
-        // Twelve edges of two parts each show behind.
-        assert_eq!(
-            surface_picture(&picture).split("d=\"").nth(1).unwrap().matches('M').count(),
-            24
-        );
-    }
-}

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 /// I₁(x) e⁻ˣ and its function's derivative times e⁻ˣ, by (1/π) ∫ exp(x (cos θ − 1)) cosᵏ θ dθ.
-fn first_kind(x: f64) -> [f64; 2] {
+pub fn first_kind(x: f64) -> [f64; 2] {
     const COUNT: usize = 400;
     let mut sums = [0.0; 2];
     for n in 0..COUNT {
@@ -18,7 +18,7 @@ fn first_kind(x: f64) -> [f64; 2] {
 }
 
 /// K₁(x) eˣ and its function's derivative times eˣ, by ∫ exp(−x (cosh t − 1)) coshᵏ t dt.
-fn second_kind(x: f64) -> [f64; 2] {
+pub fn second_kind(x: f64) -> [f64; 2] {
     const STEP: f64 = 0.01;
     let mut sums = [0.0; 2];
     for n in 0..1000 {
@@ -76,33 +76,4 @@ pub fn radial_stiffness(a: f64, b: f64, length: f64) -> f64 {
     let ([fa, ga, da], [fb, gb, db]) = (at(a), at(1.0));
     let found = solve([fa, ga, fb, gb, da, db], [1.0, -1.0, 0.0, 0.0, 0.0, 0.0]);
     -2.0 * PI * found[3]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bessel_functions() {
-        // I₁(1), I₁′(1) = I₀(1) − I₁(1); K₁(1), K₁′(1) = −K₀(1) − K₁(1).
-        let [i, di] = first_kind(1.0).map(|x| x * 1f64.exp());
-        assert!((i - 0.565_159_103_992_485).abs() <= 1e-13, "{i}");
-        assert!((di - (1.266_065_877_752_008 - i)).abs() <= 1e-13, "{di}");
-        let [k, dk] = second_kind(1.0).map(|x| x * (-1f64).exp());
-        assert!((k - 0.601_907_230_197_235).abs() <= 1e-13, "{k}");
-        assert!((dk + 0.421_024_438_240_708 + k).abs() <= 1e-13, "{dk}");
-    }
-
-    /// Plane strain, and a disc.
-    #[test]
-    fn its_limits() {
-        let (a, b) = (0.02f64, 0.04f64);
-        let (sum, difference, log) = (a * a + b * b, b * b - a * a, (b / a).ln());
-        let plane = 4.0 * PI * sum / (sum * log - difference);
-        let long = radial_stiffness(a, b, 100.0 * b);
-        assert!((long / plane - 1.0).abs() <= 1e-2, "{long} {plane}");
-        let disc = 80.0 * PI * sum / (25.0 * sum * log - 9.0 * difference);
-        let short = radial_stiffness(a, b, 0.01 * b);
-        assert!((short / disc - 1.0).abs() <= 1e-2, "{short} {disc}");
-    }
 }

@@ -25,8 +25,6 @@ pub mod seated;
 pub mod seated_shaft;
 pub mod shaft;
 pub mod statics;
-#[cfg(test)]
-mod statics_tests;
 pub mod swing;
 pub mod timoshenko;
 pub mod trust_region;

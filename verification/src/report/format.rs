@@ -44,7 +44,7 @@ pub fn fraction(value: f64) -> String {
 }
 
 /// A limit that a person chose: no zeros to pad it.
-fn limit_text(value: f64) -> String {
+pub fn limit_text(value: f64) -> String {
     let text = significant(value, 3);
     match text.contains('.') && !text.contains('e') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
@@ -53,7 +53,7 @@ fn limit_text(value: f64) -> String {
 }
 
 /// [`fraction`] for a limit.
-fn limit_fraction(value: f64) -> String {
+pub fn limit_fraction(value: f64) -> String {
     match (1e-5..10.0).contains(&value) {
         true => format!("{} %", limit_text(100.0 * value)),
         false => limit_text(value),
@@ -76,7 +76,7 @@ pub fn ours(check: &CheckReport) -> String {
 }
 
 /// A count as the integer it is, any other number with six digits.
-fn six_digits(value: Option<f64>, unit: &str) -> String {
+pub fn six_digits(value: Option<f64>, unit: &str) -> String {
     match value {
         Some(count) if unit == "1" && count.fract() == 0.0 && count.abs() < 1e6 => {
             count.to_string().replace('-', "−")
@@ -271,34 +271,4 @@ pub fn gap(check: &CheckReport, value: f64) -> String {
 /// A count with its noun.
 pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn significant_digits() {
-        let cases = [
-            (6.42134, 5, "6.4213"),
-            (-0.00123456, 4, "−0.001235"),
-            (56_951_234_567.0, 5, "5.6951e10"),
-            (3.2e-13, 3, "3.2e−13"),
-            (99_999.96, 6, "100000"),
-            (0.0, 4, "0"),
-            (1234.5678, 5, "1234.6"),
-        ];
-        for (value, digits, text) in cases {
-            assert_eq!(significant(value, digits), text);
-        }
-        assert_eq!(six_digits(Some(8.0), "1"), "8");
-        assert_eq!(six_digits(Some(8.0), "N"), "8.00000");
-        assert_eq!(six_digits(Some(f64::NAN), "1"), "NaN");
-        assert_eq!(limit_fraction(0.05), "5 %");
-        assert_eq!(limit_fraction(0.001), "0.1 %");
-        assert_eq!(limit_text(1e-13), "1e−13");
-        assert_eq!(limit_text(200.0), "200");
-        assert_eq!(fraction(0.0034), "0.340 %");
-        assert_eq!(fraction(2.1e-14), "2.1e−14");
-    }
 }

@@ -1,6 +1,6 @@
 //! The report as data, and its three forms.
 
-pub(crate) mod format;
+pub mod format;
 mod front;
 mod html;
 mod json;

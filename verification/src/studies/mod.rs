@@ -3,12 +3,12 @@
 mod cage;
 mod dent;
 mod housing;
-mod motion;
+pub mod motion;
 mod motion_sweeps;
 mod regimes;
 mod rotor;
 mod rubber;
-mod solids;
+pub mod solids;
 mod statics;
 mod varying_compliance;
 

@@ -265,7 +265,7 @@ pub fn measure(
 }
 
 /// Whether a fixed step is longer than the largest stable one.
-fn beyond_limit(method: Method, limit: Option<f64>) -> bool {
+pub fn beyond_limit(method: Method, limit: Option<f64>) -> bool {
     match (method.stepping, limit) {
         (Stepping::Fixed(step), Some(limit)) => step > limit,
         _ => false,
@@ -315,67 +315,5 @@ pub fn from_first_to_last(points: &[Point]) -> String {
             last.error
         ),
         _ => String::new(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_are_parts_of_the_displacement_the_swing_and_the_turn() {
-        let history = |race: Vec<[f64; 3]>, cage_turn| History {
-            race,
-            cage_turn,
-            ball_turn: -0.25,
-            ..History::default()
-        };
-        let reference = history(vec![[0.0, 1.0, -10.0], [0.0, 2.0, -14.0]], 0.5);
-        let found = history(vec![[0.0, 1.0, -10.0], [0.01, 2.02, -14.0]], 0.51);
-        let found = History { ball_turn: -0.26, ..found };
-        let [displacement, swing, cage, balls] = errors(&found, &reference);
-        let expected =
-            [(displacement, 0.02 / 14.0), (swing, 0.02 / 4.0), (cage, 0.02), (balls, 0.04)];
-        for (found, expected) in expected {
-            assert!((found / expected - 1.0).abs() <= 1e-12, "{found} {expected}");
-        }
-        // A run that ended early, and one that lost a number, are infinitely far off or no number.
-        let early = history(vec![[0.0, 1.0, -10.0]], 0.5);
-        assert_eq!(errors(&early, &reference)[0], f64::INFINITY);
-        let lost = history(vec![[0.0, f64::NAN, -10.0], [0.0, 2.0, -14.0]], 0.5);
-        assert!(errors(&lost, &reference)[0].is_nan());
-    }
-
-    #[test]
-    fn a_step_beyond_the_limit_is_unstable_and_one_with_error_control_is_not() {
-        assert!(beyond_limit(Method::rk4(1.01e-6), Some(1e-6)));
-        assert!(!beyond_limit(Method::rk4(0.99e-6), Some(1e-6)));
-        assert!(!beyond_limit(Method::rk4(1.0), None));
-        let controlled = Method::accurate(Integrator::DormandPrince, 1e-3);
-        assert!(!beyond_limit(controlled, Some(1e-9)));
-    }
-
-    #[test]
-    fn models_are_summed_up_from_their_points() {
-        let point = |variant: &str, seconds, error, further| Point {
-            more_errors: vec![further],
-            ..Point::new("fit", variant, seconds, error)
-        };
-        let points = [point("5", 1.0, 0.5, 0.02), point("45", 3.0, 0.25, 0.04)];
-        assert_eq!(
-            best_errors(&points, &[1, 0], "fit"),
-            "2.5e-1 of the race's swing, 2.0e-2 of the race's displacement"
-        );
-        assert_eq!(
-            from_first_to_last(&points),
-            "From 5 to 45 the time grows by a factor of 3.0 and the error goes from 5.0e-1 to 2.5e-1."
-        );
-    }
-
-    #[test]
-    fn steps_fit_into_rows() {
-        let window = Window { end: 1e-3, rows: 10 };
-        assert!((window.fitting(3e-5) - 2.5e-5).abs() <= 1e-18);
-        assert!((window.fitting(2.5e-5) - 2.5e-5).abs() <= 1e-18);
     }
 }

@@ -29,13 +29,13 @@ const MOST_REPEATS: usize = 5;
 type Counted = (f64, Option<u64>);
 
 /// A number from a mesh, and what it took.
-struct Timed {
-    series: String,
-    nodes: usize,
-    value: f64,
-    evaluations: Option<u64>,
-    seconds: f64,
-    repeats: usize,
+pub struct Timed {
+    pub series: String,
+    pub nodes: usize,
+    pub value: f64,
+    pub evaluations: Option<u64>,
+    pub seconds: f64,
+    pub repeats: usize,
 }
 
 /// Computes a number several times; the fastest counts.
@@ -76,18 +76,18 @@ fn off(value: f64, reference: f64) -> f64 {
 }
 
 /// What numbers on three meshes of a series tend to, each with cells half as large as the one before.
-struct Limit {
-    value: f64,
+pub struct Limit {
+    pub value: f64,
     /// Power of the cells' size with which the changes fall.
-    order: f64,
+    pub order: f64,
     /// Error of the finest of the three.
-    left: f64,
+    pub left: f64,
 }
 
 impl Limit {
     /// By Richardson: what each refinement changes falls by a constant factor. `meshes` counts those
     /// of the series.
-    fn new(all: &[Timed], series: &str, meshes: [usize; 3]) -> Limit {
+    pub fn new(all: &[Timed], series: &str, meshes: [usize; 3]) -> Limit {
         let own: Vec<f64> = all.iter().filter(|t| t.series == series).map(|t| t.value).collect();
         let [coarse, middle, fine] = meshes.map(|n| own[n]);
         let factor = (middle - coarse) / (fine - middle);
@@ -132,7 +132,7 @@ fn conclude(context: &mut ParetoContext, whole: &str) {
 }
 
 /// Why meshes of a series do not come to 0.1 %, from the fall of the error over the last two of them.
-fn falls_short(points: &[&Point]) -> String {
+pub fn falls_short(points: &[&Point]) -> String {
     let [.., before, last] = points else { return String::new() };
     let nodes = |point: &Point| -> f64 {
         point.variant.split(' ').next().and_then(|n| n.parse().ok()).unwrap_or(f64::NAN)
@@ -211,7 +211,7 @@ const PUSH: f64 = 1e-3;
 
 /// The frequency with which a body swings that starts with the velocities `shape`, Hz, from half a
 /// period of explicit steps; `expected` (Hz) only says when to give up.
-fn frequency_by_steps(
+pub fn frequency_by_steps(
     problem: &SolidProblem,
     shape: &[Vec3],
     expected: f64,
@@ -249,58 +249,4 @@ fn explicit_sentence() -> String {
         "Explicit steps: half a period of central differences at {STEP} of the limit, lumped mass, the search for the \
          limit included."
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::solids::{STEEL, free_body, mesh_of};
-    use bearing_dynamics::mesh::Order;
-    use bearing_dynamics::mesh::generate::{RingMesh, ring};
-    use bearing_dynamics::solver::solid::tangent::MassMatrix;
-
-    fn on_mesh(series: &str, value: f64) -> Timed {
-        let series = series.to_string();
-        Timed { series, nodes: 1, value, evaluations: None, seconds: 1.0, repeats: 1 }
-    }
-
-    #[test]
-    fn a_limit_is_what_numbers_of_its_series_tend_to() {
-        let mut all = vec![on_mesh("other", 7.0)];
-        // 3 + h² over h = 1, ½, ¼, and a mesh between them that is not used.
-        all.extend([4.0, 3.6, 3.25, 3.0625].map(|value| on_mesh("own", value)));
-        let limit = Limit::new(&all, "own", [0, 2, 3]);
-        assert!((limit.value - 3.0).abs() <= 1e-14 && (limit.order - 2.0).abs() <= 1e-14);
-        assert!((limit.left - 0.0625 / 3.0).abs() <= 1e-14);
-    }
-
-    #[test]
-    fn what_falls_short_is_continued_at_its_rate() {
-        let point = |nodes: usize, error| Point::new("slow", &format!("{nodes} nodes"), 1.0, error);
-        let (a, b) = (point(100, 0.08), point(1000, 0.04));
-        let said = falls_short(&[&a, &b]);
-        // A tenth of the error for half a decade of nodes each: 4 % to 1 % takes a hundredfold.
-        assert!(said.contains("4.00 % on 1000 nodes") && said.contains("power 0.30"), "{said}");
-        assert!(said.contains("1e5 nodes for 1 % and 2e8 nodes for 0.1 %"), "{said}");
-        let stuck = falls_short(&[&a, &point(1000, 0.08)]);
-        assert!(stuck.contains("hardly falls"), "{stuck}");
-    }
-
-    /// The start is no mode of the mesh, yet half a period tells the frequency.
-    #[test]
-    fn explicit_steps_have_the_frequency_of_their_masses() {
-        let cells = RingMesh { around: 48, radial: 1, axial: 1, radial_growth: 1.0 };
-        let solid = ring(&crate::solid_bodies::thin_ring::BODY, &cells).unwrap();
-        let mesh = mesh_of(&solid, Order::Quadratic).unwrap();
-        let problem = free_body(&mesh, STEEL);
-        let options = ModeOptions { mass: MassMatrix::Lumped, ..ModeOptions::new(8) };
-        let found = modes(&SolidModel::new(problem.clone()).unwrap(), &options).unwrap();
-        let expected = 0.5 * (found.modes[6].frequency + found.modes[7].frequency);
-        let shape = ring::oval_shape(&mesh, 0.05);
-        let (by_steps, evaluations) = frequency_by_steps(&problem, &shape, expected).unwrap();
-        println!("{:e} off", by_steps / expected - 1.0);
-        // Other modes have a share of some percent in the start, and count by its square.
-        assert!((by_steps / expected - 1.0).abs() <= 5e-4, "{by_steps} {expected}");
-        assert!(evaluations.is_some_and(|count| count > 1000));
-    }
 }

@@ -1,9 +1,9 @@
 //! The oracle's own checks: derivatives, energy minimum, closed forms, known figures.
 
-use super::hertz::{ball_on_race, exact, hamrock_brewe, in_series};
-use super::misalignment::{Dimensions, TABLE_3_5, fitted};
-use super::statics::{Coordinates, Known, OracleBall, OracleBearing};
-use super::uniform_load::UniformLoad;
+use verification::oracles::hertz::{ball_on_race, exact, hamrock_brewe, in_series};
+use verification::oracles::misalignment::{Dimensions, TABLE_3_5, fitted};
+use verification::oracles::statics::{Coordinates, Known, OracleBall, OracleBearing};
+use verification::oracles::uniform_load::UniformLoad;
 
 const STEEL: f64 = 210e9 / 0.91;
 
