@@ -19,7 +19,7 @@ const CUT: [(&str, &str, &str); 13] = [
     ("cage_telemeter", "1.5 s", "20 ms"),
     ("impact", "60 ms", "6 ms"),
     ("bar_impact", "0.4 ms", "0.05 ms"),
-    ("bushing_radial", "0.225 s", "0.05 s"),
+    ("bushing_radial", "0.225 s", "0.08 s"),
     ("creep_on_rubber", "30 s", "0.2 s"),
     ("dented_on_bushing", "60 ms", "10 ms"),
     ("rotating_load_orbit", "1.3 s", "50 ms"),
