@@ -59,9 +59,12 @@ pub fn file(table: &Array2<f64>) -> Vec<u8> {
     let length = (before + says.len() + 1).next_multiple_of(ALIGNED) - before;
     let mut bytes = Vec::with_capacity(before + length + 8 * table.len());
     bytes.extend_from_slice(start);
+    // Two numbers of twenty digits at most: it fits.
     bytes.extend((length as u16).to_le_bytes());
     bytes.extend(format!("{says:<0$}\n", length - 1).bytes());
-    bytes.extend(table.iter().flat_map(|value| value.to_le_bytes()));
+    for value in table {
+        bytes.extend_from_slice(&value.to_le_bytes());
+    }
     bytes
 }
 

@@ -15,7 +15,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use tempfile::tempdir;
 
-pub const POINTS: usize = 4_000;
+pub const POINTS: usize = 10_000;
 
 #[test]
 fn a_key_that_changes_nothing_is_told() {
@@ -394,9 +394,7 @@ fn a_terminal_is_shown_the_progress_and_a_pipe_is_not() {
     let root = tempdir().unwrap();
     let path = slow_scene(root.path());
     let out = text(&root.path().join("out"));
-    // A second or more: the line is drawn some times.
-    let points = 10_000;
-    let vary = vary_phase(points);
+    let vary = vary_phase(POINTS);
     // `script` gives the command a terminal.
     let line = format!(
         "'{}' sweep '{path}' --vary '{vary}' --threads 1 --out '{out}'",
@@ -410,7 +408,7 @@ fn a_terminal_is_shown_the_progress_and_a_pipe_is_not() {
     let shown = String::from_utf8_lossy(&run.stdout);
     assert!(run.status.success(), "{shown}");
     let progress: Vec<&str> =
-        shown.split('\r').filter(|line| line.contains(&format!("/{points} points, "))).collect();
+        shown.split('\r').filter(|line| line.contains(&format!("/{POINTS} points, "))).collect();
     assert!(progress.len() >= 3 && progress.iter().all(|line| line.contains("left")), "{shown}");
     // A file is no terminal: nothing but the last line, and remarks.
     let said = done(&["sweep", &path, "--vary", &vary_phase(200), "--out", &out]);

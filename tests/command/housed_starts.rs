@@ -56,7 +56,7 @@ fn distances_that_normals_leave_out_are_told() {
         let said = succeed(command("statics", &scene, &sets));
         assert_eq!(said.contains(words), told, "{young} {fit}: {said}");
     }
-    // Reduced, it moves along normals in steps, too: the loose race goes as far across.
+    // Reduced (of four-node elements, for time), it moves along normals in steps, too: the loose race goes as far across.
     for (young, fit, told) in [("70 GPa", "-40 um", true), ("210 GPa", "5 um", false)] {
         let more = [
             "housing.method=reduced",

@@ -376,7 +376,7 @@ fn equilibria_say_that_dents_are_left_out() {
     assert!(stderr(&output).contains("races without dents"), "{}", stderr(&output));
 }
 
-/// A hundredth of a wall is within what the springs of a bushing hold, a sixth is beyond, and the run says where that is (what `plan` says stands in the README).
+/// A hundredth of a wall is within what the springs of a bushing hold, a sixth is beyond, and the run says where that is (what `plan` says of another scene stands in the README).
 #[test]
 fn a_run_says_where_it_took_a_bushing_beyond_its_springs() {
     let place = Place::new();

@@ -6,7 +6,7 @@ use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::holds::holds;
+use bearing_dynamics::solver::solid::rubber::holds::{holds, lever, stiffness};
 use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
 use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
 use std::f64::consts::TAU;
@@ -79,6 +79,24 @@ fn a_turned_bushing_holds_as_far_as_rings_say() {
     let exact = turn_of_rings(&body, PART);
     // Five times what is left by this mesh, 0.2 %; two cells through the wall leave 13 %.
     assert!((turned / exact - 1.0).abs() <= 1e-2, "{turned} {exact}");
+}
+
+/// Long parts of the way lead to the same equilibria as short ones where nothing folds: a thick wall and a thin one, across and
+/// tilted, at a fifth of the wall, the farthest that long parts are taken for.
+#[test]
+fn long_parts_of_a_way_lead_to_the_same_equilibria() {
+    let mesh = BushingMesh { around: 8, radial: 2, axial: 2, grading: 1.0, part: Part::Whole };
+    for thickness in [0.00835, 0.003] {
+        let body = Bushing { inner_diameter: 0.0197, thickness, length: 0.03 };
+        let solid = bushing(&body, &mesh).unwrap().quadratic().unwrap().mesh;
+        for motion in [SleeveMotion::Radial, SleeveMotion::Conical] {
+            let amount = 0.2 * thickness / lever(motion, &body);
+            let [long, short] = [Some(0.1), None].map(|strain| {
+                stiffness(&solid, &with_bulk(100.0), motion, amount, strain).unwrap()
+            });
+            assert!((long / short - 1.0).abs() <= 1e-7, "{thickness} {motion:?}: {long} {short}");
+        }
+    }
 }
 
 #[test]

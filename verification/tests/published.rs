@@ -362,9 +362,8 @@ const TYPED: &[(&str, f64, &str)] = &[
     ),
 ];
 
-/// Number literals of code, without comments, text and unit tests, with their lines.
+/// Number literals of code, without comments and text, with their lines.
 fn literals(code: &str) -> Vec<(usize, f64)> {
-    let code = code.split("#[cfg(test)]").next().unwrap_or("");
     let mut found = Vec::new();
     let mut text = code.chars().peekable();
     let (mut line, mut word) = (1, String::new());

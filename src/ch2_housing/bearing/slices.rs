@@ -175,7 +175,7 @@ fn slip_at<const ACROSS: bool>(
 
 /// Adds what a point with a `share` of the load resists with. `friction` gives its
 /// [`Resistance`] from the square of the sliding speed and the share. Without `ACROSS` the point lies in the middle of its slice,
-/// which saves three hundredths of a run; the bits are the same.
+/// which saves three hundredths of a run; the bits are the same of all that is finite.
 #[inline(always)]
 pub fn add_slice<const ACROSS: bool>(
     sum: &SliceSum,
@@ -266,7 +266,7 @@ pub fn traction_force(
 pub struct Patch {
     /// m.
     pub semi_major: f64,
-    /// Along the rolling direction, m; looked at by points beside the middle of their slice.
+    /// Along the rolling direction, m. In the middle of a slice it does not count.
     pub semi_minor: f64,
     /// 1/(2R) of the deformed surface across the groove (1/m), zero leaves the Heathcote term out.
     pub curvature: f64,

@@ -23,7 +23,6 @@ use crate::solver::plan::Stage;
 use crate::solver::plan::steps::BearingSteps;
 use crate::solver::plan::tally::Tally;
 use nalgebra::Vector3;
-use std::f64::consts::TAU;
 
 pub struct BallSet {
     /// What each evaluation does.
@@ -103,14 +102,13 @@ impl BallSet {
             ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
             ContactDamping::None | ContactDamping::LankaraniNikravesh { .. } => 0.0,
         };
+        let azimuths = geometry.azimuths(bearing.ball_phase);
         let meetings = if steps.ball_contact { neighbours(layout.balls) } else { 0 };
         BallSet {
             steps,
             table: ContactTable::new(&layout),
             damping: vec![alpha; 2 * layout.padded],
-            pocket_angles: (0..layout.balls)
-                .map(|ball| pocket_angle(bearing, &layout, ball))
-                .collect(),
+            pocket_angles: azimuths.into_iter().map(cosine_and_sine).collect(),
             pockets: vec![CageContact::default(); layout.balls],
             guides: [CageContact::default(); 2],
             meetings: vec![BallContact::default(); meetings],
@@ -400,9 +398,9 @@ impl BallSet {
     }
 }
 
-fn pocket_angle(bearing: &Bearing, layout: &Layout, ball: usize) -> [f64; 2] {
-    let (sin, cos) = libm::sincos(bearing.ball_phase + TAU * ball as f64 / layout.balls as f64);
-    [cos, sin]
+fn cosine_and_sine(angle: f64) -> [f64; 2] {
+    let (sine, cosine) = libm::sincos(angle);
+    [cosine, sine]
 }
 
 /// Index of the race that guides a cage; `None` where balls do.

@@ -2,7 +2,7 @@
 //! relaxed equilibria of the rubber itself at large displacements.
 
 use super::model::{RubberModel, RubberProblem, supports};
-use super::relaxed::{RelaxedError, relaxed_in_parts};
+use super::relaxed::{RelaxedError, relaxed, relaxed_in_parts};
 use super::sleeve::SleeveMotion;
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::kinematics::vec3::{add, dot};
@@ -15,9 +15,10 @@ use crate::solver::solid::model::Prescribed;
 const REST: f64 = 1e-3;
 const FIRST: f64 = 0.05;
 const FARTHEST: f64 = 0.3;
-/// Strain that a part of the way there may add: the same amplitudes to seven digits as in parts of 2 %, for a third of the time. The
-/// nearest fold that was met lies at 34 % of a wall.
+/// Strain that a part of the way there may add, and how far that is trusted (of the wall): the same amplitudes to seven digits as
+/// in parts of 2 %, for a third of the time. Jumps and folds that were met lie at 30 % of a wall and beyond (decision 54).
 const PARTS: f64 = 0.1;
+const TRUSTED: f64 = 0.2;
 
 /// Amplitude of a motion, m or rad, at which force or moment over displacement differs by `part` from that of small amplitudes;
 /// infinite where it does not within 30 % of the wall. The mesh is that of a whole bushing.
@@ -35,7 +36,10 @@ pub fn holds(
     part: f64,
 ) -> Result<f64, RelaxedError> {
     let arm = lever(motion, body);
-    let secant = |walls: f64| stiffness(mesh, material, motion, walls * body.thickness / arm);
+    let secant = |walls: f64| {
+        let amount = walls * body.thickness / arm;
+        stiffness(mesh, material, motion, amount, (walls <= TRUSTED).then_some(PARTS))
+    };
     let rest = secant(REST)?;
     let off = |walls: f64| -> Result<f64, RelaxedError> { Ok((secant(walls)? / rest - 1.0).abs()) };
     let look = FIRST * (part / off(FIRST)?).sqrt();
@@ -56,12 +60,17 @@ pub fn lever(motion: SleeveMotion, body: &Bushing) -> f64 {
     }
 }
 
-/// Relaxed force or moment over the motion, N/m or N·m/rad.
-fn stiffness(
+/// Relaxed force or moment over the motion, N/m or N·m/rad; in parts that change strains by up to `strain` in place of those of
+/// [`relaxed`].
+///
+/// # Errors
+/// Those of [`relaxed`]; a mesh of four-node elements.
+pub fn stiffness(
     mesh: &TetMesh,
     material: &Elastomer,
     motion: SleeveMotion,
     amount: f64,
+    strain: Option<f64>,
 ) -> Result<f64, RelaxedError> {
     const HELD: Option<Profile> = Some(Profile::ZERO);
     let Elements::Quadratic(elements) = &mesh.elements else {
@@ -82,7 +91,10 @@ fn stiffness(
         prescribed,
         loads: Vec::new(),
     })?;
-    let found = relaxed_in_parts(&model, 0.0, PARTS)?;
+    let found = match strain {
+        Some(strain) => relaxed_in_parts(&model, 0.0, strain)?,
+        None => relaxed(&model, 0.0)?,
+    };
     let pushes = inner.iter().map(|&node| {
         let node = node as usize;
         let place = add(mesh.nodes[node], found.state.displacement[node]);
