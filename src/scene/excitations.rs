@@ -14,8 +14,7 @@ pub struct Excitation {
     pub frequency: f64,
     /// Whether it goes on and on, as a ramp does not.
     pub repeats: bool,
-    /// Whether it is the ripple of a load that goes from ball to ball: how much that displaces shows only along a
-    /// course.
+    /// Whether it is the ripple of a load that goes from ball to ball.
     pub is_ripple: bool,
 }
 

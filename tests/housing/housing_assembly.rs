@@ -1,5 +1,6 @@
 //! Laws of a bearing and its housing in one equilibrium, and of quasi-static courses.
 
+use crate::housed::{HousedSearch, HousedState};
 use crate::housing_common;
 
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
@@ -11,7 +12,6 @@ use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, Fit}
 use bearing_dynamics::solver::housing::condensed::{
     CondensedBore, Reach, condense, geometry_error,
 };
-use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Load, SolidModel};
 use bearing_dynamics::solver::statics::{self, Condition, StaticProblem, StaticsError};

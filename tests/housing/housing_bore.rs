@@ -14,7 +14,7 @@ use bearing_dynamics::solver::housing::bore_equilibrium::{
 use bearing_dynamics::solver::housing::condensed::{
     CondenseError, CondensedBore, Reach, condense, geometry_error,
 };
-use bearing_dynamics::solver::housing::housed::race_under_load;
+use bearing_dynamics::solver::housing::presses::race_under_load;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};

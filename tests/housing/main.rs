@@ -4,6 +4,8 @@
 mod common;
 #[path = "../common/dynamics.rs"]
 mod dynamics;
+#[path = "../../verification/src/housed.rs"]
+mod housed;
 #[path = "../housing_common/mod.rs"]
 mod housing_common;
 

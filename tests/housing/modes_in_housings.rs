@@ -1,6 +1,7 @@
 //! Natural motions of a bearing in a housing against those of all nodes of its mesh with the races.
 
 use super::housing_assembly::{fit, loads, search};
+use crate::housed::{HousedState, OUTER, moving};
 use crate::housing_common::*;
 
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
@@ -10,7 +11,6 @@ use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
 use bearing_dynamics::solver::housing::held_motions::{
     Natural, natural_shapes_of, swinging_housing,
 };
-use bearing_dynamics::solver::housing::housed::{HousedState, OUTER, moving};
 use bearing_dynamics::solver::housing::inertia::{MovingBody, housing_mass, modes};
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::tangent::{PRESCRIBED, pattern, stiffness};

@@ -4,7 +4,7 @@ use crate::housing_reduced::{Housing, fit, ring};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, BoreState, RaceLoad};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::housed::race_under_load;
+use bearing_dynamics::solver::housing::presses::race_under_load;
 use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
 use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, reduce};
 use bearing_dynamics::solver::solid::tangent::{Unknowns, pattern, stiffness};

@@ -4,7 +4,6 @@ use bearing_dynamics::kinematics::strain::von_mises;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
-use bearing_dynamics::solver::housing::quasi_static::{Course, history};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::stress::nodal_stresses;
 
@@ -13,6 +12,7 @@ use crate::check::Check;
 use crate::contact_picture::contact_picture;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
+use crate::housed::{Course, history};
 use crate::housings::{
     assumptions, bearing, condensed, fit, mesh, panel, search, solid, sum_of_loads, touched_part,
 };

@@ -5,7 +5,7 @@ use bearing_dynamics::ch2_housing::bore_contact::{Penalty, REFERENCE_AREA, STEEL
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, RaceLoad};
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::housed::race_under_load;
+use bearing_dynamics::solver::housing::presses::race_under_load;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
 

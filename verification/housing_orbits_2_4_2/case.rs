@@ -12,9 +12,7 @@ use bearing_dynamics::solver::dynamics::model::RotatingLoad;
 use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
 use bearing_dynamics::solver::housing::condensed::geometry_error;
 use bearing_dynamics::solver::housing::held_motions::swinging_housing;
-use bearing_dynamics::solver::housing::housed::{OUTER, moving};
-use bearing_dynamics::solver::housing::inertia::{InertiaEstimate, estimate};
-use bearing_dynamics::solver::housing::quasi_static::{Course, history};
+use bearing_dynamics::solver::housing::inertia::lowest_frequency;
 use bearing_dynamics::solver::housing::reduce::lowest_shapes;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::stress::nodal_stresses;
@@ -25,6 +23,7 @@ use crate::check::Check;
 use crate::contact_picture::contact_picture;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
+use crate::housed::{Course, OUTER, history, moving};
 use crate::housings::{
     BEARING, BORE_RADIUS, WIDTH, angles, assumptions, bearing, condensed, fit, mean, mesh, panel,
     radii, search, solid, sum_of_loads, touched_part,
@@ -74,7 +73,8 @@ struct Turn {
     sums: f64,
     /// Fixed normals against true distances, over the orbit's mean radius.
     geometry: f64,
-    inertia: InertiaEstimate,
+    /// Lowest natural frequency of races and housing, Hz.
+    lowest: f64,
     unknowns: usize,
     nodes: usize,
     seconds: f64,
@@ -130,8 +130,8 @@ fn turn(
     let last = &moments[POINTS - 1].state;
     let (natural, _) = lowest_shapes(&solid, &bore, 4)?;
     let housing = swinging_housing(search.bore(), OUTER, &natural, 0.0);
-    let inertia =
-        estimate(&last.stiffness, &moving([inner_race, outer_race], [true; 5]), &[housing]);
+    let bodies = moving([inner_race, outer_race], [true; 5]);
+    let lowest = lowest_frequency(&last.stiffness, &bodies, &[housing]).unwrap_or(f64::NAN);
     let drawn = pictures.map(|magnification| {
         let names = ["+Y", "+Z", "−Y", "−Z"];
         let panels: Vec<_> = (0..4)
@@ -169,7 +169,7 @@ fn turn(
         unbalanced: largest(moments.iter().map(|moment| moment.state.residual)),
         sums: largest(sums),
         geometry: largest(geometry),
-        inertia,
+        lowest,
         unknowns: bore.sizes.unknowns,
         nodes: bore.sizes.kept,
         seconds,
@@ -521,8 +521,8 @@ fn orbit_table(context: &mut CaseContext, turns: &[(char, Turn)], fixed: &[[f64;
                 format!("{:.1}", 1e9 * mean(&self::radii(&turn.inner))),
                 format!("{:.0} / {:.0}", 100.0 * turn.touched[UP], 100.0 * turn.touched[DOWN]),
                 format!("{:.2} / {:.2}", 1e-6 * turn.pressure[UP], 1e-6 * turn.pressure[DOWN]),
-                format!("{:.0}", turn.inertia.lowest),
-                format!("{:.0e}", turn.inertia.error_at(LOAD_SPEED / TAU)),
+                format!("{:.0}", turn.lowest),
+                format!("{:.0e}", (LOAD_SPEED / TAU / turn.lowest).powi(2)),
                 format!("{:.0e}", turn.unbalanced),
             ]
         })

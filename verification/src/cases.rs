@@ -54,8 +54,6 @@ mod free_spin_4_2_2;
 mod hertz_elliptic;
 #[path = "../housing_equilibrium/case.rs"]
 mod housing_equilibrium;
-#[path = "../housing_inertia_estimate/case.rs"]
-mod housing_inertia_estimate;
 #[path = "../housing_orbits_2_4_2/case.rs"]
 mod housing_orbits_2_4_2;
 #[path = "../housing_settling/case.rs"]
@@ -165,7 +163,6 @@ pub const CASES: &[Case] = &[
     housing_settling::CASE,
     assembly_fits_2_4_1::CASE,
     housing_orbits_2_4_2::CASE,
-    housing_inertia_estimate::CASE,
     reduced_housing::CASE,
     shaft_in_two_housings::CASE,
     steel_load_rates_2_4_3::CASE,

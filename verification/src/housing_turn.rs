@@ -8,14 +8,13 @@ use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::solver::dynamics::assembly::OUTER;
 use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
 use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::housed::{HousedSearch, HousedState};
-use bearing_dynamics::solver::housing::quasi_static::{Course, Moment, history};
 use bearing_dynamics::solver::housing::seat::Seat;
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::SolidModel;
 
 use crate::case::CaseError;
+use crate::housed::{Course, HousedSearch, HousedState, Moment, history};
 use crate::housings::{self, BORE_RADIUS, WIDTH, angles};
 use crate::motion;
 use crate::pareto::Stopwatch;

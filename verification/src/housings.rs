@@ -11,7 +11,6 @@ use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solver::dynamics::model::{DynamicProblem, RaceBody, Rotation};
 use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState, Fit};
 use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach, condense};
-use bearing_dynamics::solver::housing::housed::HousedSearch;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
 use bearing_dynamics::solver::statics::{Condition, StaticProblem};
@@ -20,6 +19,7 @@ use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths};
 use crate::case::CaseError;
 use crate::contact_picture::Panel;
 use crate::context::CaseContext;
+use crate::housed::HousedSearch;
 use crate::motion;
 use crate::solids::{STEEL, Vec3, free_body, mesh_of};
 

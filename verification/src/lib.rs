@@ -20,6 +20,7 @@ pub mod contact_picture;
 pub mod context;
 pub mod date;
 pub mod golden;
+pub mod housed;
 pub mod housed_shaft;
 pub mod housing_turn;
 pub mod housings;

@@ -10,7 +10,7 @@ use bearing_dynamics::solver::dynamics::model::Drive;
 use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, VELOCITY};
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, RaceLoad};
 use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::housed::race_under_load;
+use bearing_dynamics::solver::housing::presses::race_under_load;
 use bearing_dynamics::solver::housing::seat::Seat;
 use bearing_dynamics::solver::mount::Mount;
 use bearing_dynamics::solver::profile::Profile;

@@ -1,10 +1,10 @@
 //! The commands on a scene of bearings, alone or with what they sit on and in; here what they share.
 
 pub mod check;
-pub mod course;
 pub mod echo;
 pub mod housing;
 pub mod housings;
+pub mod inertia;
 pub mod lists;
 pub mod modes;
 pub mod plan;

@@ -1,7 +1,6 @@
 //! `bearing plan` of bearings and what they sit on and in: what the scene's way of solving does, and what another one
 //! of the housings would cost.
 
-use super::course::{along_course, inertia_estimate, natural, verdicts};
 use super::housing::Housing;
 use super::lists::Lists;
 use super::shapes::{Shapes, shapes};
@@ -80,7 +79,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         notes.push(note("start of the housing", UNDEFORMED));
     }
     if !housings.is_empty() {
-        notes.extend(equilibrium_notes(lists, &housings)?);
+        notes.extend(condensing_notes(lists, &housings));
     }
     // With bushings or shafts in elements the steps of all have been told.
     let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
@@ -291,43 +290,22 @@ fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
     note("table", &said)
 }
 
-/// What condensing takes; of the quasi-static method also whether equilibria will do, which needs
-/// the condensed housings. Of other methods nothing is factorised here.
-fn equilibrium_notes(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<String>> {
-    let scene = lists.scene;
-    let chosen = scene.housing_method() == Some(HousingMethod::QuasiStatic);
-    let name = if chosen { "inertia left out" } else { "quasi-static instead" };
+/// What condensing takes. Nothing is factorised here.
+fn condensing_notes(lists: &Lists, housings: &[Housing]) -> Vec<String> {
+    let chosen = lists.scene.housing_method() == Some(HousingMethod::QuasiStatic);
+    let name = if chosen { "quasi-static" } else { "quasi-static instead" };
     let mut planned = Vec::new();
     for housing in housings {
         let of = housing.before();
         let foretold = housing.constant().and_then(|()| housing.condensing());
         let (sizes, cost) = match foretold {
             Ok((_, sizes, cost)) => (sizes, cost),
-            Err(error) => return Ok(vec![note(name, &format!("not possible: {error}"))]),
+            Err(error) => return vec![note(name, &format!("not possible: {error}"))],
         };
         planned.push(note("condensed bore", &format!("{of}{}", condensed_text(&sizes))));
         planned.push(note("condensing takes", &format!("{of}{}", memory::text(&cost))));
     }
-    if !chosen {
-        let said = "what leaving out inertia would change is found with the condensed housing: \
-                    `plan` says it with method = \"quasi-static\" in [housing]";
-        planned.push(note(name, said));
-        return Ok(planned);
-    }
-    let bores = housings::condensed(housings)?;
-    let course = housings::course(lists.assembly()?.clone(), housings, &bores);
-    let natural = natural(housings, &bores)?;
-    let Some(estimate) = inertia_estimate(scene, &course, &natural)? else {
-        planned.push(note(name, "nothing holds the outer race under the largest load"));
-        return Ok(planned);
-    };
-    let (along, missing) = match along_course(scene, &course, &natural) {
-        Ok(along) => (along, String::new()),
-        Err(error) => (Vec::new(), format!("; no estimate along the course: {error}")),
-    };
-    let said = verdicts(scene, &estimate, &along).into_iter();
-    planned.extend(said.map(|said| note(name, &(said + &missing))));
-    Ok(planned)
+    planned
 }
 
 fn condensed_text(sizes: &Sizes) -> String {

@@ -1,7 +1,6 @@
 //! Housings reduced to some shapes, and the assembly that they are part of.
 
 use super::Fallible;
-use super::course::percent;
 use super::housing::Housing;
 use super::housings::{Largest, at_start, condensed, seats};
 use super::lists::Lists;
@@ -244,4 +243,11 @@ fn cut_off(scene: &AssemblyScene, made_for: &str, cut: &CutOff) -> String {
         said += &format!(", which changes at most {}", errors.join(", "));
     }
     said
+}
+
+fn percent(part: f64) -> String {
+    match part {
+        part if part > 1.0 => "more than the whole".into(),
+        part => format!("{} %", to_digits(100.0 * part, 2)),
+    }
 }

@@ -1,8 +1,8 @@
 //! `bearing statics` of bearings and what they sit on and in: one equilibrium of all at t = 0.
 
-use super::course::{estimate_at, natural, section, verdicts};
 use super::housing::Housing;
 use super::housings::{self, Equilibrium};
+use super::inertia::FrequencyRatio;
 use super::lists::Lists;
 use super::{Fallible, defaults, echo, name_of, plan};
 use crate::commands::asked::Asked;
@@ -48,8 +48,7 @@ pub struct Found<'s> {
     /// The same as that of a bearing by itself, where there is only one.
     of_one: Option<(StaticProblem, StaticSolution)>,
     remarks: Vec<String>,
-    /// What leaving out inertia costs.
-    inertia: Vec<String>,
+    inertia: Option<FrequencyRatio>,
     settled: Vec<Settled>,
     pub record: RunRecord,
 }
@@ -69,8 +68,8 @@ pub fn find_equilibrium<'s>(
     let lists = Lists::of(scene);
     let found = housings::equilibrium(&lists, housings::grown(&housings, &bores), None)?;
     let Equilibrium { still, moment, in_bores } = &found;
-    let estimate = match in_bores {
-        Some((course, search)) => estimate_at(course, &natural(&housings, &bores)?, search, moment),
+    let inertia = match in_bores {
+        Some((course, search)) => FrequencyRatio::of(scene, course, &housings, search, moment)?,
         None => None,
     };
     let mut seconds = vec![("read".into(), read), ("solve".into(), start.elapsed().as_secs_f64())];
@@ -130,10 +129,8 @@ pub fn find_equilibrium<'s>(
         remarks.push(ONE_BEARING.into());
     }
     record.sections.push(("remarks".into(), json!(remarks)));
-    let mut inertia = Vec::new();
-    if let Some(estimate) = &estimate {
-        record.sections.push(("inertia".into(), section(scene, estimate, &[])?));
-        inertia = verdicts(scene, estimate, &[]);
+    if let Some(ratio) = &inertia {
+        record.sections.push(("inertia".into(), ratio.section()?));
     }
     let Equilibrium { still, mut moment, .. } = found;
     if of_one.is_none() {
@@ -184,7 +181,9 @@ impl Found<'_> {
                 solution.iterations
             );
         }
-        self.inertia.iter().for_each(|said| text += &format!("note: {said}\n"));
+        if let Some(ratio) = &self.inertia {
+            text += &format!("note: inertia left out: {}\n", ratio.text());
+        }
         text
     }
 

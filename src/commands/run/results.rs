@@ -2,10 +2,8 @@
 
 use super::figures::key_figures;
 use super::prepared::{Fields, Prepared, SolidOf, Way};
-use crate::commands::assembly::course::{
-    along_course, inertia_estimate, natural, section, verdicts,
-};
 use crate::commands::assembly::housing::Housing;
+use crate::commands::assembly::inertia::FrequencyRatio;
 use crate::commands::bushing_remarks::beyond_bushings;
 use crate::commands::scene_remarks::{between_rows, folded};
 use crate::commands::{remarks, say};
@@ -35,7 +33,8 @@ use bearing_dynamics::scene::solid::LoadKind;
 use bearing_dynamics::scene::{Plot, RunPlot, Scene, SolidScene};
 use bearing_dynamics::solver::dynamics::foretell::Choice;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::course::CourseProblem;
+use bearing_dynamics::solver::housing::course::Course;
+use bearing_dynamics::solver::housing::course_search::CourseSearch;
 use bearing_dynamics::solver::profile::Profile;
 use serde_json::{Map, Value, json};
 use std::error::Error;
@@ -204,7 +203,7 @@ fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<String> 
     folded(&what, frequency, session.clock.row_interval())
 }
 
-/// Fields of the last state of housings and shafts in elements, the nodes of the bores, and what leaving out inertia costs.
+/// Fields of the last state of housings and shafts in elements, the nodes of the bores, and what leaving out inertia changes.
 fn housing_results(
     folder: &Path,
     prepared: &Prepared,
@@ -283,8 +282,8 @@ fn housing_results(
         said.sections.push(("housing_remarks".into(), json!(remarks)));
     }
     said.remarks.append(&mut remarks);
-    if let (Motion::Course(course), Way::Course(bores, _)) = (&session.motion, way) {
-        inertia_results(scene, &course.problem, (housings, bores), said)?;
+    if let Motion::Course(course) = &session.motion {
+        inertia_results(scene, course, housings, said)?;
     }
     Ok(())
 }
@@ -315,32 +314,25 @@ fn equilibrium(
     Ok(Some(("housing".into(), section)))
 }
 
-/// What leaving out inertia costs. A course that was found is kept, whatever becomes of the estimate.
+/// What leaving out inertia changes, about the latest equilibrium. Equilibria that were found are kept, whatever becomes of it.
 fn inertia_results(
     scene: &AssemblyScene,
-    course: &CourseProblem,
-    (housings, bores): (&[Housing], &[CondensedBore]),
+    course: &Course,
+    housings: &[Housing],
     said: &mut Said,
 ) -> Fallible<()> {
-    let natural = match natural(housings, bores) {
-        Ok(natural) => natural,
-        Err(why) => {
-            said.lines.push(format!("inertia left out       no estimate: {why}"));
-            return Ok(());
+    let problem = &course.problem;
+    let mut search = CourseSearch::of(&problem.seats);
+    let found = problem.find(&mut search, course.time()).map_err(Box::from);
+    let ratio = found.and_then(|at| FrequencyRatio::of(scene, problem, housings, &search, &at));
+    match ratio {
+        Ok(Some(ratio)) => {
+            said.sections.push(("inertia".into(), ratio.section()?));
+            said.lines.push(format!("inertia left out       {}", ratio.text()));
         }
-    };
-    let inertia = inertia_estimate(scene, course, &natural);
-    let along = along_course(scene, course, &natural);
-    let none = Vec::new();
-    let bodies = along.as_ref().unwrap_or(&none);
-    if let Ok(Some(estimate)) = &inertia {
-        said.sections.push(("inertia".into(), section(scene, estimate, bodies)?));
-        for verdict in verdicts(scene, estimate, bodies) {
-            said.lines.push(format!("inertia left out       {verdict}"));
-        }
+        Ok(None) => {}
+        Err(why) => said.lines.push(format!("inertia left out       not found: {why}")),
     }
-    let failed = inertia.as_ref().err().into_iter().chain(along.as_ref().err());
-    said.lines.extend(failed.map(|why| format!("inertia left out       no estimate: {why}")));
     Ok(())
 }
 

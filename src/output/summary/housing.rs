@@ -3,16 +3,14 @@
 use super::{Part, solid::limit_section};
 use crate::kinematics::vec3::Vec3;
 use crate::output::recorder::seat::{SeatRow, prefix};
-use crate::output::results::{ResultsError, quantity};
+use crate::output::results::quantity;
 use crate::output::session::Motion;
 use crate::scene::excitations::Excitation;
 use crate::scene::housing_problem::HousingSetup;
 use crate::solver::housing::bore_equilibrium::{BoreState, POSE_NAMES};
 use crate::solver::housing::condensed::{CondensedBore, geometry_error};
 use crate::solver::housing::course::Moment;
-use crate::solver::housing::course_inertia::CourseInertia;
 use crate::solver::housing::exchange::Exchange;
-use crate::solver::housing::inertia::InertiaEstimate;
 use crate::solver::housing::reduce::CutOff;
 use serde_json::{Map, Value, json};
 
@@ -39,54 +37,6 @@ pub fn seat_section(setup: &HousingSetup) -> Part {
         section["caution"] = json!(caution);
     }
     Ok(section)
-}
-
-/// How slow everything is against what the housing holds: what leaving out inertia costs, to what
-/// drives and, of a run, along its course.
-///
-/// # Errors
-/// A value that is not finite.
-pub fn inertia_section(
-    estimate: &InertiaEstimate,
-    excitations: &[Excitation],
-    course: Option<&CourseInertia>,
-) -> Part {
-    // A race that nothing holds for a while swings at no frequency, and its error has no bound: such
-    // parts are left out.
-    let finite = |parts: &[(&str, f64, &'static str)]| -> Result<Map<String, Value>, ResultsError> {
-        let mut map = Map::new();
-        for &(name, value, unit) in parts.iter().filter(|part| part.1.is_finite()) {
-            map.insert(name.into(), quantity(name, value, unit)?);
-        }
-        Ok(map)
-    };
-    let mut driven = Map::new();
-    for excitation in excitations {
-        let error = estimate.error_at(excitation.frequency);
-        let parts = [("frequency", excitation.frequency, "Hz"), ("error", error, "1")];
-        driven.insert(excitation.what.clone(), finite(&parts)?.into());
-    }
-    let mut section = finite(&[
-        ("lowest_frequency", estimate.lowest, "Hz"),
-        ("housing_over_race", estimate.housing_share, "1"),
-    ])?;
-    section.insert("error_of_what_drives".into(), driven.into());
-    if let Some(course) = course {
-        let mut along = finite(&[
-            ("swing", course.swing, "m"),
-            ("displacement", course.displacement, "m"),
-            ("steady", course.steady, "m"),
-            ("start_at_rest", course.start, "m"),
-            ("largest_kink", course.largest_kink, "m"),
-            ("ringing", course.ringing, "m"),
-            ("expected", course.expected(), "m"),
-            ("at_most", course.bound, "m"),
-            ("ringing_frequency", course.frequency, "Hz"),
-        ])?;
-        along.insert("kinks".into(), course.kinks.into());
-        section.insert("along_the_course".into(), along.into());
-    }
-    Ok(section.into())
 }
 
 /// What a reduced housing moves in, and what is cut off.
@@ -122,15 +72,6 @@ pub fn reduced_section(cut_off: &CutOff, excitations: &[Excitation]) -> Part {
         section["error_of_what_drives"] = driven.into();
     }
     Ok(section)
-}
-
-/// The largest of these errors, and what causes it.
-pub fn largest_error<'e>(
-    estimate: &InertiaEstimate,
-    excitations: &'e [Excitation],
-) -> Option<(f64, &'e Excitation)> {
-    let errors = excitations.iter().map(|e| (estimate.error_at(e.frequency), e));
-    errors.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// An equilibrium in a condensed housing.

@@ -96,7 +96,7 @@ impl<'b> CourseSearch<'b> {
 
 /// What balls put on the outer race at `race`, force and moment about its centre: their contacts, and what the cage
 /// takes to keep them at their azimuths.
-pub(super) fn load_of_balls(
+pub fn load_of_balls(
     [mut force, mut moment]: [Vector3<f64>; 2],
     balls: &[BallState],
     race: &Pose,
@@ -115,7 +115,7 @@ pub(super) fn load_of_balls(
 ///
 /// # Errors
 /// A load along its axis that nothing takes.
-pub(super) fn unbalanced(
+pub fn unbalanced(
     fit: &Fit,
     on_race: &RaceLoad,
     bore: &BoreState,

@@ -1,9 +1,8 @@
-//! How much a quasi-static answer leaves out: natural frequencies of the assembly against the
-//! frequencies of what drives it.
+//! Inertia of bodies and the housings that move with them: natural motions about an equilibrium.
 //!
 //! A body on a spring that is driven at ω moves by 1/(1 − (ω/ω_n)²) of its static displacement, so
-//! (ω/ω_n)² is the part that leaving out inertia misses, as long as it is small and the drive is
-//! smooth. [`super::course_inertia`] follows a whole course, whose velocity jumps.
+//! (ω/ω_n)² is the part that a quasi-static answer misses, as long as it is small and the drive is
+//! smooth.
 
 use super::bore_equilibrium::BoreSearch;
 use crate::ch2_housing::bearing::inertia::Inertia;
@@ -19,22 +18,6 @@ pub struct MovingBody {
     pub inertia: Inertia,
     /// Coordinates that it may move along; others stay where they are.
     pub free: [bool; 5],
-}
-
-/// Part of a quasi-static answer that inertia would change.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InertiaEstimate {
-    /// Lowest natural frequency of bodies and the housings that move with them, Hz.
-    pub lowest: f64,
-    /// Kinetic energy of the housings in that motion over that of the races in them.
-    pub housing_share: f64,
-}
-
-impl InertiaEstimate {
-    /// (f/f_n)² of an excitation, Hz: an error over the part of the displacement that goes with it.
-    pub fn error_at(&self, frequency: f64) -> f64 {
-        (frequency / self.lowest).powi(2)
-    }
 }
 
 /// x, y, z (m) and tilts (rad) of each body that takes part, or their rates.
@@ -170,28 +153,15 @@ pub fn modes(
     found
 }
 
-/// Lowest natural frequency about an equilibrium with this stiffness over the coordinates of the bodies, and amplitudes of shapes behind
-/// them.
-pub fn estimate(
+/// Lowest natural frequency, Hz, about an equilibrium with this stiffness over the coordinates of the bodies, and amplitudes of
+/// shapes behind them. `None` where nothing moves or a body has no mass.
+pub fn lowest_frequency(
     stiffness: &DMatrix<f64>,
     bodies: &[MovingBody],
     housings: &[HousingMass],
-) -> InertiaEstimate {
+) -> Option<f64> {
     let found = modes(stiffness, bodies, housings);
-    let Some(lowest) = found.first() else {
-        return InertiaEstimate { lowest: f64::NAN, housing_share: f64::NAN };
-    };
-    let of_race = |HousingMass { race, .. }: &HousingMass| {
-        let own = diagonal(&bodies[*race].inertia);
-        (1..5)
-            .map(|i| own[i] * lowest.shape[5 * race + i] * lowest.shape[5 * race + i])
-            .sum::<f64>()
-    };
-    InertiaEstimate {
-        lowest: lowest.square.max(0.0).sqrt() / TAU,
-        housing_share: lowest.housings.iter().sum::<f64>()
-            / housings.iter().map(of_race).sum::<f64>(),
-    }
+    found.first().map(|lowest| lowest.square.max(0.0).sqrt() / TAU)
 }
 
 /// Of a body along x, y, z (kg) and its tilts (kg·m²).

@@ -1,13 +1,16 @@
 //! Patterns of force on a bore that a reduced housing answers to statically: what a race puts on it.
 
-use super::bore_equilibrium::{BoreSearch, BoreState, Fit, RaceLoad};
+use super::bore_equilibrium::{BoreError, BoreSearch, BoreState, Fit, RaceLoad, check_load};
 use super::condensed::{CondensedBore, lever};
-use super::housed::{in_bore, race_under_load};
 use crate::ch2_housing::bore_contact::Penalty;
+use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, cross};
 use crate::solver::dense::DenseFactor;
+use crate::solver::mount::Mount;
 use crate::solver::sparse::FactorError;
-use crate::solver::statics::StaticsError;
+use crate::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBody, StaticSeat};
+use crate::solver::statics::{Condition, StaticOptions, StaticsError, solve_assembly_in};
+use nalgebra::SVector;
 use std::f64::consts::TAU;
 
 /// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
@@ -35,6 +38,52 @@ pub struct Hardest<'s> {
     pub moment: f64,
     /// Where a run starts: loads that come from elsewhere, and go through levers, are known there only.
     pub start: Option<&'s BoreState>,
+}
+
+fn in_bore(source: BoreError) -> StaticsError {
+    StaticsError::Seat { of: String::new(), source }
+}
+
+/// A race alone in its bore under `load`, looked for from where it was last.
+///
+/// A loose race without load stays where it is. Loads that leave it several places get one near the last.
+///
+/// # Errors
+/// A load that the bore cannot hold.
+pub fn race_under_load(
+    search: &mut BoreSearch,
+    fit: &Fit,
+    load: &RaceLoad,
+) -> Result<BoreState, StaticsError> {
+    check_load(fit, load).map_err(in_bore)?;
+    let [_, y, z] = load.force.map(Condition::Load);
+    let [_, about_y, about_z] = load.moment.map(Condition::Load);
+    let place = Place::Loaded(Loaded {
+        axes: None,
+        conditions: [Condition::Displacement(0.0), y, z, about_y, about_z],
+        springs: [0.0; 5],
+        rest: [0.0; 5],
+        start: Some([0.0; 5]),
+        room: fit.radius,
+    });
+    let seat = StaticSeat {
+        name: None,
+        mount: Mount::at_centre(0),
+        nominal: Pose::identity(),
+        bore: search.bore(),
+        penalty: search.penalty(),
+        fit: *fit,
+    };
+    let assembly = StaticAssembly {
+        bodies: vec![StaticBody { name: "the outer race".into(), place }],
+        seats: vec![seat],
+        ..StaticAssembly::default()
+    };
+    let [y, z, tilt_y, tilt_z] = search.pose();
+    let near = [SVector::from([0.0, y, z, tilt_y, tilt_z])];
+    let bores = std::slice::from_mut(search);
+    let mut solution = solve_assembly_in(&assembly, bores, Some(&near), &StaticOptions::default())?;
+    Ok(solution.seats.remove(0))
 }
 
 /// Of a race pressed into the bore by a force in directions all round, with moments and without, turned by nothing but a moment about

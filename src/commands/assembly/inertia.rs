@@ -1,0 +1,80 @@
+//! Part of a quasi-static answer that inertia would change, (f/f_n)²: of the fastest excitation against the lowest natural frequency.
+
+use super::Fallible;
+use super::housing::Housing;
+use super::modes::natural_shapes;
+use bearing_dynamics::output::results::quantity;
+use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::excitations::{Excitation, excitations};
+use bearing_dynamics::solver::clock::to_digits;
+use bearing_dynamics::solver::housing::course::{CourseProblem, Moment};
+use bearing_dynamics::solver::housing::course_search::CourseSearch;
+use bearing_dynamics::solver::housing::held_motions::swinging_housing;
+use bearing_dynamics::solver::housing::inertia::lowest_frequency;
+use serde_json::{Value, json};
+
+/// Natural modes of each housing that take part: four give the lowest frequency of a pillow block to 1e-5.
+const NATURAL: usize = 4;
+
+/// The lowest natural frequency and the fastest excitation of a scene in housings.
+pub struct FrequencyRatio {
+    /// Hz.
+    lowest: f64,
+    fastest: Excitation,
+}
+
+impl FrequencyRatio {
+    /// About the equilibrium `found`; `None` where nothing is driven at a frequency, or nothing holds a race.
+    ///
+    /// # Errors
+    /// Natural modes of a housing that are not found.
+    pub fn of(
+        scene: &AssemblyScene,
+        course: &CourseProblem,
+        housings: &[Housing],
+        search: &CourseSearch,
+        found: &Moment,
+    ) -> Fallible<Option<FrequencyRatio>> {
+        let all = excitations(scene).into_iter();
+        let Some(fastest) = all.max_by(|a, b| a.frequency.total_cmp(&b.frequency)) else {
+            return Ok(None);
+        };
+        let bodies = course.moving();
+        let mut masses = Vec::new();
+        for ((bore, seat), housing) in search.bores().iter().zip(&course.seats).zip(housings) {
+            let body = seat.body(&course.assembly);
+            let Some(race) = bodies.iter().position(|of| of.body == body) else { continue };
+            let (natural, _) = natural_shapes(housing, bore.bore(), NATURAL)?;
+            masses.push(swinging_housing(bore, race, &natural, seat.damping));
+        }
+        let lowest = lowest_frequency(&found.solution.with_shapes, &bodies, &masses);
+        Ok(lowest.filter(|lowest| *lowest > 0.0).map(|lowest| FrequencyRatio { lowest, fastest }))
+    }
+
+    fn squared(&self) -> f64 {
+        (self.fastest.frequency / self.lowest).powi(2)
+    }
+
+    /// As the summary of results has it.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn section(&self) -> Fallible<Value> {
+        Ok(json!({
+            "lowest_frequency": quantity("frequency", self.lowest, "Hz")?,
+            "fastest_excitation": self.fastest.what,
+            "fastest_frequency": quantity("frequency", self.fastest.frequency, "Hz")?,
+            "frequency_ratio_squared": quantity("ratio", self.squared(), "1")?,
+        }))
+    }
+
+    pub fn text(&self) -> String {
+        format!(
+            "(f/f_n)² = {} of the displacement that goes with {} ({} Hz); lowest natural frequency {} Hz",
+            to_digits(self.squared(), 2),
+            self.fastest.what,
+            to_digits(self.fastest.frequency, 4),
+            to_digits(self.lowest, 4)
+        )
+    }
+}
