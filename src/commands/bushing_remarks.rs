@@ -1,21 +1,23 @@
 //! How far the springs that stand for bushings hold, and where a run went beyond.
 
-use bearing_dynamics::output::bushing_reach::{Beyond, beyond};
+use bearing_dynamics::output::bushing_reach::{Beyond, beyond, farthest};
 use bearing_dynamics::output::session::Session;
-use bearing_dynamics::scene::assembly::{
-    AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Spring, SpringAt, SpringEnd,
-};
+use bearing_dynamics::output::warnings::{Warning, WarningCode};
+use bearing_dynamics::scene::assembly::{AssemblyScene, BushingOfSpring, Spring};
 use bearing_dynamics::scene::bushing_reach::{PART, reach};
 use bearing_dynamics::solver::clock::{to_digits, told};
+use bearing_dynamics::solver::dynamics::race::{self, mounted};
 use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
+use bearing_dynamics::solver::static_assembly::StaticAssembly;
+use bearing_dynamics::solver::statics::AssemblySolution;
 
 /// How far a bushing may move before the springs that stand for it stop holding; one line for each that is not solved in
 /// elements.
 pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
     let said = |spring: &Spring| {
         let of = spring.bushing.as_ref()?;
-        if let Some(elements) = &of.elements {
-            return four_nodes(&spring.name, elements);
+        if of.elements.is_some() {
+            return None;
         }
         let part = 100.0 * PART;
         let all = SleeveMotion::ALL.into_iter().map(|motion| reach(of, motion));
@@ -49,46 +51,50 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<String> {
     scene.springs.iter().filter_map(said).collect()
 }
 
-/// A bushing that does not go round the outer race that it ends at, or stands beside it.
-pub fn beside_its_race(scene: &AssemblyScene, spring: &Spring) -> Option<String> {
-    let of = &spring.bushing.as_ref()?.body;
-    let at_race = |end: &SpringEnd| match end.at {
-        SpringAt::Race { bearing, side: 1 } => Some((&scene.bearings[bearing].scene, end.along)),
-        _ => None,
-    };
-    let (race, along) = spring.ends.iter().find_map(at_race)?;
-    let sizes = &race.dimensions;
-    let race_diameter = 2.0 * sizes.outer_radius.unwrap_or(race.geometry.race_radii().1);
-    let race_length = sizes.length.unwrap_or(2.0 * race.geometry.ball_radius);
-    let millimetres = |length: f64| told(1e3 * length);
-    if of.inner_diameter < race_diameter * (1.0 - 1e-9) {
-        return Some(format!(
-            "the rubber of bushing {} begins at a diameter of {} mm, inside the outer race that it holds, of {} mm: check both",
-            spring.name,
-            millimetres(of.inner_diameter),
-            millimetres(race_diameter)
-        ));
+/// Part of a bushing's wall beyond which its springs are not those of small displacements.
+const FAR_IN_WALL: f64 = 0.3;
+
+/// Bushings that an equilibrium pushes far into their walls.
+///
+/// # Errors
+/// One that is pushed through its wall.
+pub fn pushed(
+    scene: &AssemblyScene,
+    assembly: &StaticAssembly,
+    solution: &AssemblySolution,
+) -> Result<Vec<Warning>, String> {
+    let mut warnings = Vec::new();
+    for (spring, connection) in scene.springs.iter().zip(&assembly.connections) {
+        let Some(wall) = spring.bushing.as_ref().map(|of| of.body.thickness) else { continue };
+        let ends = connection
+            .ends
+            .map(|mount| mounted(&race::fixed(&solution.coordinates[mount.body].into()), &mount));
+        let [gone, _] = connection.reach([&ends[0], &ends[1]]);
+        refuse_through(&spring.name, gone, wall)?;
+        if gone > FAR_IN_WALL * wall {
+            let text = format!(
+                "bushing {} is pushed by {:.3} mm into its wall of {:.3} mm, and its springs are fitted to small displacements: reduce the load, or \
+                 make the bushing stiffer",
+                spring.name,
+                1e3 * gone,
+                1e3 * wall
+            );
+            warnings.push(Warning::new(WarningCode::BushingBeyondFit, text));
+        }
     }
-    let farthest = 0.5 * (of.length + race_length);
-    (along.abs() > farthest).then(|| {
-        format!(
-            "bushing {} holds the outer race {} mm beside the race's middle, farther than both are long: check `from_at` and `to_at`, which \
-             count from the middle of what they belong to, of the ground along X",
-            spring.name,
-            millimetres(along.abs())
-        )
-    })
+    Ok(warnings)
 }
 
-/// Elements of explicit steps are stiffer than rubber, the coarser the more.
-fn four_nodes(name: &str, elements: &BushingInElements) -> Option<String> {
-    let is_explicit = matches!(elements.stepping, BushingStepping::Explicit { .. });
-    is_explicit.then(|| {
-        format!(
-            "bushing {name} moves in elements of four nodes, which are stiffer than its rubber, the coarser the more: hold a \
-             run with finer cells, or with method = \"implicit\", against it"
-        )
-    })
+fn refuse_through(name: &str, gone: f64, wall: f64) -> Result<(), String> {
+    if gone < wall {
+        return Ok(());
+    }
+    Err(format!(
+        "bushing {name} is pushed by {:.3} mm, through its wall. Allowed: less than its thickness, {:.3} mm. Hint: reduce the load, or make the \
+         bushing stiffer",
+        1e3 * gone,
+        1e3 * wall
+    ))
 }
 
 /// "0.95 mm across"; nothing of a motion without end.
@@ -103,34 +109,35 @@ fn reaching((motion, amplitude): (SleeveMotion, f64)) -> Option<String> {
     })
 }
 
-/// What a run says of its bushings: elements that are too stiff, and springs that it took beyond where they hold.
-pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<String> {
+/// Springs of bushings that a run took beyond where they hold.
+pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
     let Some(assembly) = session.motion.assembly() else { return Vec::new() };
     let known = |of: &BushingOfSpring, motion| reach(of, motion).ok();
     let said = |beyond: Beyond| {
         let went = reaching((beyond.motion, beyond.reached))?;
         let holds = reaching((beyond.motion, beyond.holds))?;
-        let wall = scene.springs[beyond.spring].bushing.as_ref()?.body.thickness;
-        let through = matches!(beyond.motion, SleeveMotion::Radial) && beyond.reached >= wall;
-        let through = match through {
-            true => format!(
-                "; its wall is {} mm, beyond it nothing but springs is there",
-                to_digits(1e3 * wall, 3)
-            ),
-            false => String::new(),
-        };
-        Some(format!(
-            "bushing {} went {went} at t = {} s: its springs, fitted to small vibrations, are off by {} % from {holds} on, \
-             and more beyond{through}",
+        let text = format!(
+            "bushing {} moves {went} at t = {} s: its springs, fitted to small vibrations, are {} % off from {holds} on",
             scene.springs[beyond.spring].name,
             told(beyond.time),
             100.0 * PART
-        ))
+        );
+        Some(Warning::new(WarningCode::BushingBeyondFit, text))
     };
-    let of_elements = scene
-        .springs
-        .iter()
-        .filter_map(|spring| four_nodes(&spring.name, spring.bushing.as_ref()?.elements.as_ref()?));
-    let of_springs = beyond(scene, assembly, &session.recorder, known).into_iter().filter_map(said);
-    of_elements.chain(of_springs).collect()
+    beyond(scene, assembly, &session.recorder, known).into_iter().filter_map(said).collect()
+}
+
+/// Refuses a run that took a bushing through its wall.
+///
+/// # Errors
+/// The bushing, and how far it went.
+pub fn refuse_pushed_through(scene: &AssemblyScene, session: &Session) -> Result<(), String> {
+    let Some(assembly) = session.motion.assembly() else { return Ok(()) };
+    scene.springs.iter().try_for_each(|spring| {
+        let Some(of) = &spring.bushing else { return Ok(()) };
+        let Some(farthest) = farthest(assembly, &session.recorder, &spring.name) else {
+            return Ok(());
+        };
+        refuse_through(&spring.name, farthest[0][0], of.body.thickness)
+    })
 }

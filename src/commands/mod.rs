@@ -15,16 +15,14 @@ pub mod pack;
 pub mod pictures;
 pub mod plan;
 pub mod plan_step;
-mod remarks;
 pub mod rubber;
 pub mod run;
-mod scene_remarks;
 pub mod schema;
-mod size_remarks;
 pub mod solid;
 pub mod statics;
 pub mod sweep;
 pub mod table;
+mod warnings;
 
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::visible::visible;

@@ -1,14 +1,15 @@
 //! A static solution as a person reads it on a terminal.
 
 use bearing_dynamics::output::results::load_zone_of;
+use bearing_dynamics::output::warnings::{Warning, lines};
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
 use bearing_dynamics::solver::statics::{
     AssemblySolution, BallState, COORDINATE_NAMES, ContactState, StaticSolution,
 };
 use std::fmt::Write;
 
-/// Position, reactions, stiffness, balls, `housing` in lines of its own, and what to beware of.
-pub fn render(solution: &StaticSolution, housing: &str, remarks: &[String]) -> String {
+/// Position, reactions, stiffness, balls, `housing` in lines of its own, and warnings.
+pub fn render(solution: &StaticSolution, housing: &str, warnings: &[Warning]) -> String {
     let mut text = String::new();
     race(&mut text, solution);
     stiffness(&mut text, |i, j| solution.stiffness[(i, j)]);
@@ -26,10 +27,7 @@ pub fn render(solution: &StaticSolution, housing: &str, remarks: &[String]) -> S
         solution.iterations, solution.contact_evaluations, solution.residual
     );
     text += housing;
-    for remark in remarks {
-        let _ = writeln!(text, "note: {remark}");
-    }
-    text
+    text + &lines(warnings)
 }
 
 /// The same of several bodies and bearings; `names` are those of the bearings, `housings` lines of their own.
@@ -38,7 +36,7 @@ pub fn render_assembly(
     names: &[&str],
     solution: &AssemblySolution,
     housings: &str,
-    remarks: &[String],
+    warnings: &[Warning],
 ) -> String {
     let mut text = String::new();
     let all = solution.bearings.iter().flat_map(|bearing| &bearing.balls);
@@ -83,10 +81,7 @@ pub fn render_assembly(
         "{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",
         solution.iterations, solution.contact_evaluations, solution.residual
     );
-    for remark in remarks {
-        let _ = writeln!(text, "note: {remark}");
-    }
-    text
+    text + &lines(warnings)
 }
 
 /// Sections of bodies that bend, a line each.

@@ -4,7 +4,8 @@
 //! - [`results`], [`assembly_results`]: the results folder of one static solution
 //! - [`session`]: a run of whatever moves; [`recorder`] keeps its rows, [`mod@state`] is what it resumes from,
 //!   [`table`] and [`summary`] say what came of it
-//! - [`fields`], [`remarks`]: a solid as ParaView opens it, and what to know before using it
+//! - [`fields`]: a solid as ParaView opens it
+//! - [`warnings`]: codes of warnings, and the warnings on solids
 //! - [`pictures`]: plots of a run; [`plots`]: SVG pictures from plain data
 //! - [`folder`]: who may write into a results folder, and over what
 //! - [`json`], [`npy`]: readers that take what a file promises for no more than it is
@@ -42,7 +43,6 @@ pub mod pack;
 pub mod pictures;
 pub mod plots;
 pub mod recorder;
-pub mod remarks;
 pub mod results;
 pub mod series;
 pub mod session;
@@ -51,6 +51,7 @@ pub mod state;
 pub mod summary;
 pub mod table;
 pub mod visible;
+pub mod warnings;
 
 pub use atomic::{WriteError, write_atomic};
 pub use series::{Column, Series, SeriesError};

@@ -104,10 +104,10 @@ pub fn write_pack(
     let mut tolerances = default_tolerances(input.class);
     // A tolerance may only name what the summary has.
     if input.class != ToleranceClass::F64Exact
-        && run.sections.iter().any(|(name, _)| name == "remarks")
+        && run.sections.iter().any(|(name, _)| name == "warnings")
     {
-        let ignored = ignored("every program words its own remarks");
-        tolerances.channels.insert("remarks".into(), ignored);
+        let ignored = ignored("every program words its own warnings");
+        tolerances.channels.insert("warnings".into(), ignored);
     }
     tolerances.check()?;
     // The manifest goes last: a pack without one is incomplete.

@@ -217,9 +217,9 @@ pub enum Problem {
     )]
     InterferenceTooLarge { clearance: f64, least: f64 },
     #[error(
-        "the groove radius {} does not fit a ball radius of {}. Allowed: more than {} to less than {}. \
-         Hint: the groove must be a little wider than the ball; was a diameter given?",
-        mm(*.groove), mm(*.ball), mm(*.ball), mm(10.0 * *.ball)
+        "the groove radius {} does not fit a ball radius of {}. Allowed: more than {} to {}. \
+         Hint: a groove radius is 1.01 to 1.08 times the ball radius; was a diameter given?",
+        mm(*.groove), mm(*.ball), mm(*.ball), mm(1.2 * *.ball)
     )]
     GrooveDoesNotFit { groove: f64, ball: f64 },
     #[error(

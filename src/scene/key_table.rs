@@ -17,12 +17,12 @@ pub const PLOTS: &[&str] =
 
 pub(super) const RADIUS: Kind = Kind::Quantity(Length, open(0.0, 10_000.0, "mm"));
 const CLEARANCE: Kind = Kind::Quantity(Length, closed(-10_000.0, 10_000.0, "um"));
-const CONFORMITY: Kind = Kind::Number(open(0.5, 5.0, ""));
-const OSCULATION: Kind = Kind::Number(open(0.1, 1.0, ""));
-const MODULUS: Kind = Kind::Quantity(Stress, closed(0.001, 10_000.0, "GPa"));
+const CONFORMITY: Kind = Kind::Number(open(0.5, 0.6, ""));
+const OSCULATION: Kind = Kind::Number(open(0.83, 1.0, ""));
+pub(super) const MODULUS: Kind = Kind::Quantity(Stress, closed(0.5, 1000.0, "GPa"));
 const POISSON: Kind =
     Kind::Number(Range { low: 0.0, high: 0.5, low_included: true, high_included: false, unit: "" });
-pub(super) const DENSITY: Kind = Kind::Quantity(Density, closed(1.0, 30_000.0, "kg/m^3"));
+pub(super) const DENSITY: Kind = Kind::Quantity(Density, closed(500.0, 25_000.0, "kg/m^3"));
 pub(super) const FORCE: Kind = Kind::Profile(Force, closed(-1e9, 1e9, "N"));
 pub(super) const MOMENT: Kind = Kind::Profile(Moment, closed(-1e9, 1e9, "N m"));
 pub(super) const SPIN: Kind = Kind::Profile(RotationSpeed, closed(-1e6, 1e6, "rpm"));
@@ -30,7 +30,7 @@ pub(super) const DISPLACEMENT: Kind = Kind::Profile(Length, closed(-1e6, 1e6, "u
 pub(super) const TILT: Kind = Kind::Profile(Angle, closed(-5.0, 5.0, "deg"));
 const POSITION: Kind = Kind::Quantity(Length, closed(-1e6, 1e6, "um"));
 const TILT_POSITION: Kind = Kind::Quantity(Angle, closed(-5.0, 5.0, "deg"));
-const GRAVITY: Kind = Kind::Vector(Acceleration, closed(-1e6, 1e6, "m/s^2"));
+pub(super) const GRAVITY: Kind = Kind::Vector(Acceleration, closed(-2000.0, 2000.0, "m/s^2"));
 
 const STEEL_MODULUS: Need = Default { value: "210 GPa", reason: "bearing steel" };
 const STEEL_POISSON: Need = Default { value: "0.3", reason: "bearing steel" };

@@ -1,11 +1,11 @@
 //! Rows of the key table: a body that bends, as a beam of stepped round sections with discs.
 
-use crate::scene::key_table::{DENSITY, DENSITY_HINT, FORCE, LOAD_HINT, STEEL_DENSITY};
+use crate::scene::key_table::{DENSITY, DENSITY_HINT, FORCE, LOAD_HINT, MODULUS, STEEL_DENSITY};
 use crate::scene::key_table_dynamics::{INERTIA, INERTIA_HINT, MASS, MASS_HINT};
 use crate::scene::key_table_solid::DAMPED_MOTIONS;
 use crate::scene::keys::{Key, Kind, Need, Range, Table, closed, list_table, open, table};
 use crate::scene::units::Dimension::{
-    Angle, Damping, Frequency, Length, Rate, Stiffness, Stress, Unbalance,
+    Angle, Damping, Frequency, Length, Rate, Stiffness, Unbalance,
 };
 use Need::{Default, Depends, Optional, Required};
 
@@ -31,7 +31,7 @@ const OF_RING: Need = Depends("`outer_diameter` and `width`, or `mass`");
 #[rustfmt::skip]
 pub(super) const KEYS: &[Key] = &[
     Key::new("body.beam.start", PLACE, Depends("half its length before the body's centre"), "Where the first segment begins: distance from the body's centre along its axis.").hint(PLACE_HINT).example_of("-200 mm"),
-    Key::new("body.beam.youngs_modulus", Kind::Quantity(Stress, closed(0.001, 1e6, "GPa")), Default { value: "210 GPa", reason: "steel" }, "Modulus of elasticity of all segments.").hint("steel has 210 GPa; check the unit"),
+    Key::new("body.beam.youngs_modulus", MODULUS, Default { value: "210 GPa", reason: "steel" }, "Modulus of elasticity of all segments.").hint("steel has 210 GPa; check the unit"),
     Key::new("body.beam.poisson_ratio", POISSON, Default { value: "0.3", reason: "steel" }, "Poisson's ratio; for the shear of the sections."),
     Key::new("body.beam.density", DENSITY, STEEL_DENSITY, "Density of segments, and of discs of a given size.").hint(DENSITY_HINT),
     Key::new("body.beam.below", Kind::Quantity(Frequency, closed(0.0, 1e7, "Hz")), Default { value: "5 kHz", reason: "far above the speed of a shaft" }, "Natural shapes of the free shaft up to this frequency are taken, and beside them its static answers to whatever takes hold of it; `plan` says what is left out.").example_of("5 kHz"),

@@ -1,9 +1,9 @@
 //! Rows of the key table: a flexible solid by itself, its mesh, supports, loads and outputs.
 
-use crate::scene::key_table::{DENSITY, FORCE};
+use crate::scene::key_table::{FORCE, GRAVITY};
 use crate::scene::keys::{Key, Kind, Need, Range, Table, above, closed, list_table, open, table};
 use crate::scene::units::Dimension::{
-    Acceleration, Frequency, Length, Rate, RotationSpeed, Speed, Stress, Time,
+    Density, Frequency, Length, Rate, RotationSpeed, Speed, Stress, Time,
 };
 use Need::{Default, Depends, Optional, Required};
 
@@ -57,7 +57,7 @@ pub(super) const KEYS: &[Key] = &[
         "Mass-proportional damping: force per mass and velocity.").hint("the source has 77 and 100 1/s"),
     Key::new("solid.damped_motion", Kind::Choice(DAMPED_MOTIONS), Default { value: "absolute", reason: "as (2.7)" },
         "What damping brakes: all motion, or motion relative to the body's own translation and rotation."),
-    Key::new("solid.gravity", Kind::Vector(Acceleration, closed(-1e6, 1e6, "m/s^2")), Default { value: "none", reason: "the weight is left out" },
+    Key::new("solid.gravity", GRAVITY, Default { value: "none", reason: "the weight is left out" },
         "Acceleration of gravity along X, Y and Z."),
     Key::new("solid.velocity", Kind::Vector(Speed, closed(-1e4, 1e4, "m/s")), Default { value: "none", reason: "it starts at rest" },
         "Velocity of the whole body at the start of a run.").example_of("-1 m/s"),
@@ -70,7 +70,7 @@ pub(super) const KEYS: &[Key] = &[
         "Young's modulus.").hint("steel has 210 GPa; check the unit"),
     Key::new("solid.material.poisson_ratio", Kind::Number(open(-1.0, 0.5, "")), Default { value: "0.3", reason: "bearing steel" },
         "Poisson's ratio.").hint("at 0.5 a solid cannot change its volume; this law needs less"),
-    Key::new("solid.material.density", DENSITY, Depends("7850 kg/m^3, bearing steel; of rubber 1100 kg/m^3"), "Density.").hint("steel has 7850 kg/m^3; check the unit"),
+    Key::new("solid.material.density", Kind::Quantity(Density, closed(1.0, 30_000.0, "kg/m^3")), Depends("7850 kg/m^3, bearing steel; of rubber 1100 kg/m^3"), "Density.").hint("steel has 7850 kg/m^3; check the unit"),
     Key::new("solid.material.table", Kind::Choice(RUBBERS), Depends(WITH_RUBBER),
         "Rubber of this table of the source; keys given beside it take the place of what it says, `[[solid.material.maxwell]]` that of all its Maxwell elements."),
     Key::new("solid.material.rubber_modulus", Kind::Quantity(Stress, closed(1e-6, 1e6, "MPa")), Depends("with `law = \"elastomer\"`; required without `table`"),

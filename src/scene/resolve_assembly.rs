@@ -15,7 +15,9 @@ use crate::scene::resolve_dynamics::{
     check_inertia, check_unbalance, foundation, rotating_load, rotation,
 };
 use crate::scene::resolve_housing::in_housing;
-use crate::scene::resolve_places::{refuse_races_apart, refuse_shared_places};
+use crate::scene::resolve_places::{
+    refuse_races_apart, refuse_rubber_in_races, refuse_shared_places, refuse_thick_shafts,
+};
 use crate::scene::resolve_shaft::{beam, refuse_places_off_shafts, refuse_springs_on_elements};
 use crate::scene::resolve_solid::{refuse_fields, refuse_solid};
 use crate::scene::resolve_spring::spring;
@@ -68,6 +70,8 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         .collect::<Result<Vec<_>, _>>()?;
     refuse_places_off_shafts(document, (&bearings, &springs), &resolved)?;
     refuse_races_apart(document, &bearings, &resolved)?;
+    refuse_thick_shafts(document, &bearings, &resolved)?;
+    refuse_rubber_in_races(document, &bearings, &springs)?;
     name_what_holds(&mut bearings, &springs);
     let sensors = Vec::new();
     let scene = AssemblyScene { bearings, bodies: resolved, springs, sensors, defaults_used };

@@ -128,7 +128,7 @@ fn groove(reader: &Reader, race: &str, ball: f64, nominal: f64) -> Result<f64, S
         }
     };
     let largest_ball = ball.max(nominal);
-    if radius > largest_ball && radius < 10.0 * ball {
+    if radius > largest_ball && radius <= 1.2 * ball {
         Ok(radius)
     } else {
         let problem = Problem::GrooveDoesNotFit { groove: radius, ball: largest_ball };

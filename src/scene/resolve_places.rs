@@ -1,8 +1,9 @@
 //! Whether bearings sit where they can.
 
-use crate::scene::assembly::{Carrier, PlacedBearing, SceneBody};
+use crate::scene::assembly::{Carrier, PlacedBearing, SceneBody, Spring, SpringAt};
 use crate::scene::document::Document;
 use crate::scene::error::{Problem, SceneError};
+use crate::solver::clock::told;
 use crate::solver::dynamics::bounds::race_limit;
 use crate::solver::dynamics::model::Drive;
 
@@ -75,6 +76,77 @@ pub(super) fn refuse_races_apart(
             Some(name) => document.error_of_name("bearing", name, problem),
             None => document.error("bearing.outer_at", problem),
         });
+    }
+    Ok(())
+}
+
+/// Shafts that are thicker than the groove of an inner race on them.
+pub(super) fn refuse_thick_shafts(
+    document: &Document,
+    bearings: &[PlacedBearing],
+    bodies: &[SceneBody],
+) -> Result<(), SceneError> {
+    for placed in bearings {
+        let Carrier::Body { index, at } = placed.carriers[0] else { continue };
+        let Some(beam) = &bodies[index].beam else { continue };
+        let mut end = beam.start;
+        let here = beam.beam.segments.iter().filter(|segment| {
+            let start = end;
+            end += segment.length;
+            start <= at && at <= end
+        });
+        // At a shoulder the race may sit on the thinner side.
+        let Some(diameter) = here.map(|segment| segment.outer_diameter).reduce(f64::min) else {
+            continue;
+        };
+        let groove = 2.0 * placed.scene.geometry.race_radii().0;
+        if diameter <= groove {
+            continue;
+        }
+        let reason = format!(
+            "body.{} is {} mm thick here, more than the {} mm of the inner race's groove",
+            bodies[index].name,
+            told(1e3 * diameter),
+            told(1e3 * groove)
+        );
+        let problem = Problem::refused(reason, "check segments, `inner_at` and their units");
+        return Err(match &placed.name {
+            Some(name) => document.error_of_name("bearing", name, problem),
+            None => document.error("bearing.inner_at", problem),
+        });
+    }
+    Ok(())
+}
+
+/// Bushings whose rubber begins inside the outer race that they hold.
+pub(super) fn refuse_rubber_in_races(
+    document: &Document,
+    bearings: &[PlacedBearing],
+    springs: &[Spring],
+) -> Result<(), SceneError> {
+    for spring in springs {
+        let Some(of) = &spring.bushing else { continue };
+        let mut ends = spring.ends.iter();
+        let race = ends.find_map(|end| match end.at {
+            SpringAt::Race { bearing, side: 1 } => Some(&bearings[bearing].scene),
+            _ => None,
+        });
+        let Some(race) = race else { continue };
+        let radius = race.dimensions.outer_radius.unwrap_or(race.geometry.race_radii().1);
+        if of.body.inner_diameter >= 2.0 * radius * (1.0 - 1e-9) {
+            continue;
+        }
+        let reason = format!(
+            "the rubber begins at {} mm, inside the outer race that it holds, of {} mm",
+            told(1e3 * of.body.inner_diameter),
+            told(2e3 * radius)
+        );
+        let advice = "give it the diameter of the race, or more";
+        return Err(document.scoped(&spring.name).refused(
+            "spring.bushing.inner_diameter",
+            reason,
+            advice,
+        ));
     }
     Ok(())
 }

@@ -9,10 +9,6 @@ use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::check_mesh::{MeshFile, say_written};
 use crate::commands::echo::through;
 use crate::commands::run::{planned_request, request};
-use crate::commands::scene_remarks::{
-    moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
-};
-use crate::commands::size_remarks::of_sizes;
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::output::fields::size::fields_size;
@@ -102,11 +98,8 @@ fn of_scene(
     }
     if scene.one().is_none() {
         sits.into_iter().for_each(|(label, said)| line(&label, said));
-        of_shafts(scene).into_iter().for_each(|said| line("note", said));
-        of_springs(scene).into_iter().for_each(|said| line("note", said));
     }
     sensors(scene).into_iter().for_each(|(label, said)| line(&label, said));
-    of_sizes(scene).into_iter().for_each(|said| line("note", said));
     for (label, value) in of_run(scene, housings) {
         line(label, value);
     }
@@ -223,10 +216,7 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
         && let Some(one) = scene.one()
     {
         said.extend(bodies(&one.scene));
-        said.extend(turning_races(scene).map(|said| ("note", said)));
     }
-    said.extend(sudden_fits(scene).map(|said| ("note", said)));
-    said.extend(moving_starts(scene).map(|said| ("note", said)));
     if !housings.is_empty() || scene.has_shafts_in_elements() {
         let mut solids = of_housings(housings);
         // Shafts are not meshed for this.

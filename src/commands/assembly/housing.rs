@@ -6,7 +6,6 @@ use crate::commands::placed;
 use crate::commands::solid::mesh_notes;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
-use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::read::LengthUnit;
 use bearing_dynamics::scene::Document;
@@ -17,10 +16,9 @@ use bearing_dynamics::scene::housing_problem::{
 use bearing_dynamics::scene::solid::{MeshPlace, MeshSource};
 use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::solver::clock::{rounded, to_digits};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState};
+use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
 use bearing_dynamics::solver::housing::condensed::{
-    CondensedBore, Sizes, beyond_normals, condense_over, cost, sizes,
+    CondensedBore, Sizes, condense_over, cost, sizes,
 };
 use bearing_dynamics::solver::housing::course::CourseSeat;
 use bearing_dynamics::solver::housing::seat::Seat;
@@ -208,54 +206,6 @@ impl Housing {
             )
         });
         format!("{from}{}", put.unwrap_or_default())
-    }
-
-    /// Where normals that stay leave distances wrong by much of what the race is pressed in, its bore being so with all nodes displaced (m).
-    pub fn beyond_normals(
-        &self,
-        bore: &CondensedBore,
-        displacement: &[Vec3],
-        state: &BoreState,
-    ) -> Option<String> {
-        let moved = bore.nodes.iter().map(|node| displacement[node.node as usize]);
-        let touching = beyond_normals(bore, moved, &state.pose)
-            .zip(&state.loads)
-            .filter(|(_, load)| **load > 0.0);
-        self.off_normals(touching.map(|(beyond, _)| beyond), state.deepest())
-    }
-
-    /// The same of what moves in steps, reduced, as last evaluated.
-    pub fn beyond_normals_in_steps(
-        &self,
-        system: &System,
-        number: usize,
-        displacement: &[Vec3],
-        t: f64,
-    ) -> Option<String> {
-        let mut seats = system.assembly.seats.iter().zip(&system.seats);
-        let (seat, now) = seats.find(|(seat, _)| seat.solid == number)?;
-        let solid = &system.assembly.solids[number];
-        let touching: Vec<[f64; 2]> =
-            now.beyond_normals(seat, solid, t, |node| displacement[node as usize]).collect();
-        let deepest = touching.iter().fold(0.0, |most: f64, [_, depth]| most.max(*depth));
-        self.off_normals(touching.iter().map(|[beyond, _]| *beyond), deepest)
-    }
-
-    /// What is said of nodes that touch and are so far beside where normals have them, the deepest pressed in so far; m.
-    fn off_normals(&self, beyond: impl Iterator<Item = f64>, deepest: f64) -> Option<String> {
-        /// Part of the deepest penetration that is worth a word.
-        const MUCH: f64 = 0.05;
-        let off = beyond.fold(0.0, |most: f64, beyond| most.max(beyond.abs()));
-        (deepest > 0.0 && off > MUCH * deepest).then(|| {
-            format!(
-                "{}nodes of the bore that touch are up to {} nm beside where normals that stay have them, and the race is pressed in by {} nm: pressure and \
-                 penetration are not to be relied on, the race's place is off by about as much. Hint: runs with method = \"explicit\" have the true \
-                 distances",
-                self.before(),
-                to_digits(1e9 * off, 3),
-                to_digits(1e9 * deepest, 3)
-            )
-        })
     }
 
     /// What a plan says of it, solid number `index`, solved this way.

@@ -7,20 +7,18 @@ use super::Fallible;
 use super::housing::Housing;
 use super::housings::{self, Equilibrium};
 use super::lists::Lists;
-use super::whirl::{Spinning, rpm};
+use super::whirl::Spinning;
 use super::{plan, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::{refuse_beyond, spun};
-use crate::commands::remarks::of_balls_at_speed;
-use crate::commands::scene_remarks::at_rest;
+use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
-use bearing_dynamics::output::remarks::of_narrow_contact;
+use bearing_dynamics::output::warnings::{Warning, WarningCode, lines, solid::of_contact_nodes};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::clock::to_digits;
 use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
-use bearing_dynamics::solver::dynamics::connection::Connection;
 use bearing_dynamics::solver::dynamics::model::Rotation;
 use bearing_dynamics::solver::housing::condensed::CondensedBore;
 use bearing_dynamics::solver::housing::held_motions::{
@@ -82,80 +80,40 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
     }
     say(&text)?;
-    let mut remarks: Vec<String> = at_rest(scene).collect();
-    let spinning = match spinning(assembly, still, solution, &bodies, &masses) {
-        Ok(spinning) => {
-            let housed = !masses.is_empty();
-            spinning.map(|whirling| Spinning::new(whirling, housed)).transpose()?
-        }
+    let mut warnings = of_equilibrium(scene, still, solution)?;
+    let (spinning, no_whirl) = match spinning(assembly, still, solution, &bodies, &masses) {
+        Ok(Some(whirling)) => (Some(Spinning::new(whirling, !masses.is_empty())?), None),
+        Ok(None) => (None, by_torque(assembly)),
         // Motions at rest are what they are.
-        Err(why @ RotorError::Uneven { .. }) => {
-            remarks
-                .push(format!("whirl, critical speeds and a Campbell diagram are not told: {why}"));
-            None
-        }
+        Err(why @ RotorError::Uneven { .. }) => (None, Some(why.to_string())),
         Err(RotorError::Unstable) if solution.determinacy != Determinacy::Determinate => {
-            remarks.push(
-                "whirl, critical speeds and a Campbell diagram are not told: nothing holds what spins in this equilibrium, as bearings without load are no \
-                 springs and no spring holds it to the ground; give it a load or preload"
-                    .into(),
-            );
-            None
+            (None, Some("no bearing load and no spring holds what spins".into()))
         }
         Err(error) => return Err(error.into()),
     };
-    if spinning.is_none() {
-        remarks.extend(by_torque(assembly));
-    }
-    remarks.extend(relaxing(assembly, spinning.is_some()).map(String::from));
     if let Some(spinning) = &spinning {
         say(&spinning.text())?;
-        remarks.extend(spinning.remarks());
-        remarks.extend(of_other_speed(scene, assembly, spinning.whirling.top_speed));
-        remarks.extend(of_one_speed(scene, spinning.whirling.top_speed));
+        warnings.extend(spinning.warnings());
     }
-    remarks.extend(of_balls_at_speed(scene, solution));
-    remarks.extend(beyond_shapes(assembly, found.iter().map(frequency)));
-    if found.iter().any(|mode| frequency(mode) == 0.0) {
-        remarks.push(
-            "a frequency of zero is of a motion that no contact and no spring brings back".into(),
-        );
+    if let Some(why) = &no_whirl {
+        say(&format!("whirl, critical speeds and Campbell diagram not computed: {why}\n"))?;
     }
-    remarks.push(
-        match spinning {
-            None => "about the equilibrium at t = 0, nothing turning; balls are springs without mass",
-            Some(_) if flung(scene) => "about the equilibrium at t = 0, which has the balls' centrifugal force, modes without what turning does besides; balls \
-                        are springs without mass and contacts do not damp",
-            Some(_) => "about the equilibrium at t = 0, modes with nothing turning; balls are springs without mass and contacts do not damp",
-        }
-        .into(),
-    );
-    let narrow = housings.iter().zip(&moment.solution.seats);
-    remarks.extend(narrow.filter_map(|(housing, seat)| {
-        Some(format!("{}{}", housing.before(), of_narrow_contact(seat)?))
-    }));
-    if !masses.is_empty() {
-        let natural: Vec<String> = of_housings.iter().map(|(_, count)| count.to_string()).collect();
-        let within = match first_left_out.is_finite() {
-            true => format!(
-                "; motions are told too fast, by less than 1 % up to {} Hz, eight tenths of where the first natural shape that is left out swings",
-                to_digits(0.8 * first_left_out, 4)
-            ),
-            false => String::new(),
-        };
-        remarks.push(format!(
-            "housings take part with the shapes that follow their races and {} natural ones (housing.modes_to of reduced ones says up to which \
-             frequency){within}",
-            natural.join(" and ")
-        ));
+    let above = |limit: f64| found.iter().filter(|mode| frequency(mode) > limit).count();
+    warnings.extend(beyond_modes(assembly, above));
+    warnings.extend(beyond_natural(first_left_out, above));
+    for (housing, seat) in housings.iter().zip(&moment.solution.seats) {
+        warnings.extend(of_contact_nodes(seat).map(|of| of.named(&housing.before())));
     }
-    remarks.iter().try_for_each(|remark| say(&format!("note: {remark}\n")))?;
+    say(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let seconds = vec![("solve".into(), start.elapsed().as_secs_f64())];
     let mut record = record(&lists, plan::of_statics(&lists, &housings)?, seconds)?;
     record.ran.clone_from(&moment.solution.ran);
-    record.sections.push(("remarks".into(), json!(remarks)));
+    record.sections.push(("warnings".into(), json!(warnings)));
+    if let Some(why) = &no_whirl {
+        record.sections.push(("no_rotor".into(), json!(why)));
+    }
     let mut written = Vec::new();
     if let Some(spinning) = &spinning {
         record.sections.push(("rotor".into(), spinning.section()));
@@ -202,8 +160,7 @@ fn by_torque(assembly: &Assembly) -> Option<String> {
     };
     let body = assembly.bodies.iter().find(turned)?;
     Some(format!(
-        "a torque turns {}, at a speed that a run finds: whirl, critical speeds and a Campbell diagram are told up to a given one; write speed = \"... rpm\" \
-         in the place of the torque",
+        "a torque turns {}, so that its speed is not known; write speed = \"... rpm\" instead of the torque",
         body.name
     ))
 }
@@ -222,78 +179,32 @@ fn spinning(
     whirling(assembly, still, solution, bodies, masses).map(Some)
 }
 
-/// What a reader should know where whirl is that of the speed at the end, `top` (rad/s), and the equilibrium that of another at t = 0.
-fn of_other_speed(scene: &AssemblyScene, assembly: &Assembly, top: f64) -> Option<String> {
-    let speeds = assembly.bodies.iter().filter_map(|body| match &body.driven()?.rotation {
-        Rotation::Speed(speed) => Some(speed.value(0.0)),
-        Rotation::Torque(_) => None,
-    });
-    let first =
-        speeds.fold(0.0, |first: f64, now| if now.abs() > first.abs() { now } else { first });
-    let flung = flung(scene);
-    let [first, last] = [first, top].map(|speed| to_digits(rpm(speed), 6));
-    let balls = match flung {
-        true => format!("the balls' centrifugal force is that at {first} rpm, too"),
-        false => "the balls' centrifugal force is left out".into(),
-    };
-    (first != last).then(|| {
-        format!(
-            "whirl is at {last} rpm, where the speed ends, about the equilibrium at t = 0, where it is {first} rpm: {balls}; \
-             write speed = \"{last} rpm\" for the equilibrium there{}",
-            if flung { "" } else { ", with ball_forces.centrifugal = true" }
-        )
-    })
-}
-
-/// Whether the equilibrium has the centrifugal force of balls.
-fn flung(scene: &AssemblyScene) -> bool {
-    scene.bearings.iter().any(|placed| placed.scene.centrifugal)
-}
-
-/// What springs with Maxwell elements do in what is told.
-fn relaxing(assembly: &Assembly, whirls: bool) -> Option<&'static str> {
-    let mut with = assembly.connections.iter().filter(|of| !of.maxwell().is_empty()).peekable();
-    with.peek()?;
-    let turns = |of: &Connection| has_speed(&assembly.bodies[of.ends[0].body]);
-    Some(match (whirls, with.any(turns)) {
-        (false, _) => {
-            "springs with Maxwell elements have in each of the modes the stiffness that they store at its frequency; what they damp is \
-             told of whirl alone"
-        }
-        (true, false) => {
-            "springs with Maxwell elements have in each of the modes and critical speeds the stiffness that they store at its frequency; whirl and \
-             the Campbell diagram have what they damp, too"
-        }
-        (true, true) => {
-            "springs with Maxwell elements have in each of the modes the stiffness that they store at its frequency; whirl and the Campbell diagram \
-             have what they damp, too. At critical speeds those that turn have the stiffness that forward whirl once a turn finds in their axes, relaxed \
-             where they turn as fast; backward ones are higher"
-        }
-    })
-}
-
-/// What a reader should know of other speeds than the scene's, `top` (rad/s), where bearings are stiff as that makes them.
-fn of_one_speed(scene: &AssemblyScene, top: f64) -> Option<String> {
-    (flung(scene) && top != 0.0).then(|| {
-        format!(
-            "bearings are as stiff at every speed as the balls' centrifugal force makes them at the start: critical speeds and the Campbell diagram \
-             hold near {} rpm alone; give each speed of interest as the scene's",
-            to_digits(rpm(top), 6)
-        )
-    })
-}
-
-/// Motions above what the natural shapes of the shaft with the fewest of them reach.
-fn beyond_shapes(assembly: &Assembly, found: impl Iterator<Item = f64>) -> Option<String> {
+/// Modes above the kept ones of the shaft with the fewest of them.
+fn beyond_modes(assembly: &Assembly, above: impl Fn(f64) -> usize) -> Option<Warning> {
     let limits = assembly.shafts.iter().map(|shaft| (shaft.shapes.cut.above / TAU, shaft.body));
     let (limit, body) = limits.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let beyond = found.filter(|frequency| *frequency > limit).count();
+    let beyond = above(limit);
     (beyond > 0).then(|| {
-        format!(
-            "{beyond} of the modes, those above {limit:.0} Hz, reach beyond the natural shapes of {}: what is left of it there are shapes that \
-             answer loads, which swing too fast (from half of that frequency on by 0.2 to 0.4 % where it was measured); body.NAME.beam.below has more natural ones",
+        let text = format!(
+            "{beyond} of the modes, those above {limit:.0} Hz, are above the kept modes of {}, so that their frequencies are too high: raise \
+             body.NAME.beam.below",
             assembly.bodies[body].name
-        )
+        );
+        Warning::new(WarningCode::BeyondKeptModes, text)
+    })
+}
+
+/// Modes near or above the first natural mode (Hz) that a housing leaves out: below eight tenths of it frequencies are off by less than 1 %.
+fn beyond_natural(first_left_out: f64, above: impl Fn(f64) -> usize) -> Option<Warning> {
+    let limit = 0.8 * first_left_out;
+    let beyond = above(limit);
+    (beyond > 0).then(|| {
+        let text = format!(
+            "{beyond} of the modes, those above {} Hz, are near or above the kept modes of a housing, so that their frequencies are too high by 1 % \
+             and more: raise housing.modes_to of a reduced housing",
+            to_digits(limit, 4)
+        );
+        Warning::new(WarningCode::BeyondKeptModes, text)
     })
 }
 

@@ -10,10 +10,7 @@ use crate::commands::bushing_remarks::of_bushings;
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::run::{self, planned_request};
-use crate::commands::scene_remarks::{
-    moving_starts, of_shafts, of_springs, sudden_fits, turning_races,
-};
-use crate::commands::size_remarks::of_sizes;
+use crate::commands::warnings;
 use crate::commands::{CommandResult, Outcome, memory};
 use bearing_dynamics::output::fields::size::{fields_size, file_bytes};
 use bearing_dynamics::output::session::{RunRequest, table_size};
@@ -61,13 +58,8 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         }
         (Some(settings), _) => of_steps(lists, &housings, reduced.as_ref(), settings)?,
     };
-    notes.extend(of_sizes(scene).iter().map(|said| note("size", said)));
-    notes.extend(of_shafts(scene).iter().map(|said| note("shaft", said)));
-    notes.extend(of_springs(scene).iter().map(|said| note("spring", said)));
+    notes.extend(warnings::of_bushings(scene).iter().map(ToString::to_string));
     notes.extend(of_bushings(scene).iter().map(|said| note("bushing", said)));
-    notes.extend(turning_races(scene).map(|said| note("outer race", &said)));
-    notes.extend(sudden_fits(scene).map(|said| note("fit", &said)));
-    notes.extend(moving_starts(scene).map(|said| note("start", &said)));
     for housing in &housings {
         notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
     }

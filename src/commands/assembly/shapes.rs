@@ -8,6 +8,7 @@ use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::plan_step::note;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::session::Motion;
+use bearing_dynamics::output::warnings::{Warning, WarningCode};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::excitations::{Excitation, excitations};
 use bearing_dynamics::solver::clock::to_digits;
@@ -162,8 +163,8 @@ impl Shapes {
         said
     }
 
-    /// What there is to say where a race was pressed (N) or turned (N m) beyond what the shapes of its housing are made for.
-    pub fn beyond(&self, housings: &[Housing], index: usize, found: [f64; 2]) -> Option<String> {
+    /// A race that was pressed (N) or turned (N m) beyond what the shapes of its housing are made for.
+    pub fn beyond(&self, housings: &[Housing], index: usize, found: [f64; 2]) -> Option<Warning> {
         let (hardest, start) = self.presses[index];
         let housing = &housings[index];
         let force = hardest.force.max(start[0]);
@@ -174,12 +175,12 @@ impl Shapes {
         }
         let needed = found[0].max(found[1] / housing.setup.width);
         let [force, moment, needed] = [found[0], found[1], needed].map(|of| to_digits(of, 4));
-        Some(format!(
-            "{}the bore was pressed by up to {force} N and {moment} N m, beyond what its shapes are made for ({}): what they leave out \
-             there is not known. Hint: write press = \"{needed} N\", or more, in [housing]",
-            housing.before(),
+        let text = format!(
+            "the load on the bore reaches {force} N and {moment} N m, beyond what its static correction modes are made for ({}): write press = \
+             \"{needed} N\", or more, in [housing]",
             self.made_for(index)
-        ))
+        );
+        Some(Warning::new(WarningCode::BeyondKeptModes, text).named(&housing.before()))
     }
 
     /// Unknowns, shapes and frequencies of each housing, a line each.

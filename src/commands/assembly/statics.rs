@@ -8,7 +8,8 @@ use super::{Fallible, defaults, echo, name_of, plan};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::echo::{frequencies, hertz, sections};
-use crate::commands::{CommandResult, Outcome, pictures, record, remarks, say, table};
+use crate::commands::warnings::of_equilibrium;
+use crate::commands::{CommandResult, Outcome, pictures, record, say, table};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::assembly_results::{Solved, readable, write};
 use bearing_dynamics::output::atomic::write_atomic;
@@ -16,12 +17,12 @@ use bearing_dynamics::output::fields::bore::{BoreNodeState, bore_series, condens
 use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::plots::{LoadZone, load_zone};
 use bearing_dynamics::output::recorder::seat::{SeatRow, seat_columns};
-use bearing_dynamics::output::remarks as of_solid;
 use bearing_dynamics::output::results::{ResultsError, RunRecord, quantity, write_static_results};
 use bearing_dynamics::output::summary::housing::{
     PEAK_PRESSURE, equilibrium_section, solver_section,
 };
 use bearing_dynamics::output::summary::solid::field_sections;
+use bearing_dynamics::output::warnings::{Warning, solid as of_solid};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Plot};
 use bearing_dynamics::solver::housing::bore_equilibrium::{BoreState, POSE_NAMES};
@@ -34,8 +35,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-const ONE_BEARING: &str = "moment-tilt and polar are not drawn: they move the inner race of a bearing by itself, whose outer race stands still at the origin; \
-     of this scene, `bearing sweep` gives loads over places";
+const ONE_BEARING: &str = "note: moment-tilt and polar are drawn of a single bearing with a fixed outer race only; `bearing sweep` gives loads over positions\n";
 
 /// An equilibrium and everything its results folder records.
 pub struct Found<'s> {
@@ -47,7 +47,7 @@ pub struct Found<'s> {
     moment: Moment,
     /// The same as that of a bearing by itself, where there is only one.
     of_one: Option<(StaticProblem, StaticSolution)>,
-    remarks: Vec<String>,
+    warnings: Vec<Warning>,
     inertia: Option<FrequencyRatio>,
     settled: Vec<Settled>,
     pub record: RunRecord,
@@ -84,10 +84,7 @@ pub fn find_equilibrium<'s>(
         }
         None => None,
     };
-    let mut remarks = match &of_one {
-        Some(_) => remarks::of_statics(scene.common(), still, &moment.solution),
-        None => remarks::of_assembly(scene, still, &moment.solution),
-    };
+    let mut warnings = of_equilibrium(scene, still, &moment.solution)?;
     let defaults = match scene.only() {
         Some(alone) => alone.defaults_used.clone(),
         None => defaults(scene),
@@ -109,26 +106,17 @@ pub fn find_equilibrium<'s>(
             record.sections.push(("frequencies".into(), by_name(scene, speeds)?));
         }
     }
-    let (mut settled, mut of_housings) = (Vec::with_capacity(housings.len()), Vec::new());
+    let mut settled = Vec::with_capacity(housings.len());
     for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&moment.solution.seats) {
         let own = Settled::new(housing, bore, state);
         let model = &own.housing.setup.model;
         let mut said = of_solid::of_equilibrium(model, &own.displacement, &own.stress);
-        said.extend(of_solid::of_narrow_contact(state));
-        of_housings.extend(said.iter().map(|said| format!("{}{said}", own.housing.before())));
-        of_housings.extend(own.housing.beyond_normals(bore, &own.displacement, state));
+        said.extend(of_solid::of_contact_nodes(state));
+        warnings.extend(said.into_iter().map(|of| of.named(&own.housing.before())));
         own.record(bore, moment, &mut record)?;
         settled.push(own);
     }
-    if !settled.is_empty() {
-        record.sections.push(("housing_remarks".into(), json!(of_housings)));
-    }
-    remarks.append(&mut of_housings);
-    if scene.common().plots.contains(&Plot::MomentTilt) && (of_one.is_none() || !settled.is_empty())
-    {
-        remarks.push(ONE_BEARING.into());
-    }
-    record.sections.push(("remarks".into(), json!(remarks)));
+    record.sections.push(("warnings".into(), json!(warnings)));
     if let Some(ratio) = &inertia {
         record.sections.push(("inertia".into(), ratio.section()?));
     }
@@ -140,7 +128,7 @@ pub fn find_equilibrium<'s>(
     // Bores are needed no longer.
     let assembly = StaticAssembly { bodies, bearings, connections, shafts, seats: Vec::new() };
     let names = scene.bearings.iter().map(name_of).collect();
-    Ok(Found { scene, names, assembly, moment, of_one, remarks, inertia, settled, record })
+    Ok(Found { scene, names, assembly, moment, of_one, warnings, inertia, settled, record })
 }
 
 /// What there is of each bearing under its name; that of the only one by itself.
@@ -168,10 +156,16 @@ impl Found<'_> {
             text += &format!("note: {note}\n");
         }
         text += &match &self.of_one {
-            Some((_, solution)) => table::render(solution, &of_housings, &self.remarks),
+            Some((_, solution)) => table::render(solution, &of_housings, &self.warnings),
             None => {
                 let names = &self.names;
-                table::render_assembly(&self.assembly, names, solution, &of_housings, &self.remarks)
+                table::render_assembly(
+                    &self.assembly,
+                    names,
+                    solution,
+                    &of_housings,
+                    &self.warnings,
+                )
             }
         };
         if !self.settled.is_empty() {
@@ -183,6 +177,11 @@ impl Found<'_> {
         }
         if let Some(ratio) = &self.inertia {
             text += &format!("note: inertia left out: {}\n", ratio.text());
+        }
+        if self.scene.common().plots.contains(&Plot::MomentTilt)
+            && (self.of_one.is_none() || !self.settled.is_empty())
+        {
+            text += ONE_BEARING;
         }
         text
     }

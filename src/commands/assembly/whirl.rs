@@ -4,6 +4,7 @@ use super::Fallible;
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::plots::campbell;
 use bearing_dynamics::output::series::{Column, Series};
+use bearing_dynamics::output::warnings::{Warning, WarningCode};
 use bearing_dynamics::solver::rotor::critical::Critical;
 use bearing_dynamics::solver::rotor::model::RotorError;
 use bearing_dynamics::solver::rotor::whirl::{Campbell, Whirl};
@@ -36,7 +37,7 @@ pub struct Spinning {
     housed: bool,
 }
 
-pub fn rpm(speed: f64) -> f64 {
+fn rpm(speed: f64) -> f64 {
     speed * 60.0 / TAU
 }
 
@@ -128,23 +129,22 @@ impl Spinning {
         text
     }
 
-    /// What grows, if anything does.
-    pub fn remarks(&self) -> Vec<String> {
+    /// A rotor that nothing holds, and whirl that grows.
+    pub fn warnings(&self) -> Vec<Warning> {
         let loose = self.whirling.model.is_loose().then(|| {
-            "nothing holds what spins across its axis in this equilibrium, as bearings without load are no springs and no spring holds it to the ground: whirl and critical \
-             speeds are those of a free rotor; give it its weight (gravity), a load or preload, or run it up"
-                .to_string()
+            let text = "no bearing load and no spring holds what spins across its axis, so that whirl and critical speeds are those of a free rotor: give it \
+                        gravity, a load or preload";
+            Warning::new(WarningCode::IndeterminatePosition, text)
         });
         let grows = self.whirls.iter().filter(|whirl| whirl.damping_ratio() < -1e-9);
-        let grows = grows
-            .map(|whirl| {
-                format!(
-                    "the whirl of {:.3} Hz grows at {:.1} rpm: damping that turns with the shaft feeds it above its critical speed",
-                    whirl.frequency() / TAU,
-                    rpm(self.whirling.top_speed)
-                )
-            })
-            ;
+        let grows = grows.map(|whirl| {
+            let text = format!(
+                "the whirl of {:.3} Hz grows at {:.1} rpm: reduce the speed or the internal damping, or add damping that does not rotate",
+                whirl.frequency() / TAU,
+                rpm(self.whirling.top_speed)
+            );
+            Warning::new(WarningCode::WhirlUnstable, text)
+        });
         loose.into_iter().chain(grows).collect()
     }
 

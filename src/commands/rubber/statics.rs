@@ -5,15 +5,15 @@ use crate::commands::asked::Asked;
 use crate::commands::earlier::Writes;
 use crate::commands::memory::announced;
 use crate::commands::solid::statics::{WRITTEN, table, write};
-use crate::commands::solid::{record, say_mesh_notes, say_remarks};
+use crate::commands::solid::{record, say_mesh_notes};
 use crate::commands::{CommandResult, Outcome, interruption, placed, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::rubber_stresses;
-use bearing_dynamics::output::remarks;
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::summary::rubber::{
     self as summary, harmonic_section, harmonic_series,
 };
+use bearing_dynamics::output::warnings::{lines, solid::of_rubber};
 use bearing_dynamics::scene::rubber_problem::vibrating;
 use bearing_dynamics::scene::solid::{Harmonic, RubberScene};
 use bearing_dynamics::scene::{Document, SolidScene};
@@ -70,23 +70,15 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     };
     let (mut summary, series) =
         summary::rubber_statics(setup, built, (time, &found), &stress, section, &record)?;
-    let mut remarks = remarks::of_rubber(model, &found.state.displacement)?;
-    let moved = found.state.displacement.iter().flatten().any(|u| u.abs() > STILL);
-    if answers.is_some() && moved {
-        remarks.push(
-            "small vibrations are about the undeformed solid, not about the equilibrium that is told with them, where their stiffness is another. For K' at 0 Hz \
-             there take the difference of two equilibria a little apart, for others a `run` with this displacement as the mean"
-                .into(),
-        );
-    }
-    summary["remarks"] = json!(remarks);
+    let warnings = of_rubber(model, &found.state.displacement)?;
+    summary["warnings"] = json!(warnings);
     say_mesh_notes(built)?;
     say(&format!("relaxed, under loads and displacements of t = {} s\n", told(time)))?;
     say(&table(&summary))?;
     if let Some((asked, answers)) = &answers {
         say(&harmonic_table(asked, answers))?;
     }
-    say_remarks(&remarks)?;
+    say(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     write(&folder, &built.mesh, &found.state.displacement, &stress, &series)?;
     let mut files = WRITTEN + 1;
@@ -98,9 +90,6 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     say(&format!("wrote {files} files to {}\n", folder.display()))?;
     Ok(Outcome::Done)
 }
-
-/// Displacement that is none, m: what rounding leaves of a sine at its end.
-const STILL: f64 = 1e-12;
 
 /// A bar for the parts of loads and displacements, and whether to go on.
 struct Watch {

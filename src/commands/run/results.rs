@@ -4,9 +4,9 @@ use super::figures::key_figures;
 use super::prepared::{Fields, Prepared, SolidOf, Way};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
-use crate::commands::bushing_remarks::beyond_bushings;
-use crate::commands::scene_remarks::{between_rows, folded};
-use crate::commands::{remarks, say};
+use crate::commands::bushing_remarks::refuse_pushed_through;
+use crate::commands::say;
+use crate::commands::warnings::{aliased, of_run};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
 use bearing_dynamics::output::fields::{
@@ -17,7 +17,6 @@ use bearing_dynamics::output::pictures::solid::{
     force_plots, probe_spectra, series_plots, spectrum_plot,
 };
 use bearing_dynamics::output::recorder::seat::prefix;
-use bearing_dynamics::output::remarks as of_solid;
 use bearing_dynamics::output::session::{Motion, RunRequest, Session, Status};
 use bearing_dynamics::output::spectrum::Spectrum;
 use bearing_dynamics::output::summary::housing::{
@@ -27,6 +26,7 @@ use bearing_dynamics::output::summary::rubber::rubber_mass;
 use bearing_dynamics::output::summary::solid::{field_sections, mass_section};
 use bearing_dynamics::output::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::table::RunTable;
+use bearing_dynamics::output::warnings::{Warning, lines, solid as of_solid};
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::excitations::excitations;
 use bearing_dynamics::scene::solid::LoadKind;
@@ -55,7 +55,7 @@ pub(super) struct Seconds {
 #[derive(Default)]
 struct Said {
     sections: Vec<(String, Value)>,
-    remarks: Vec<String>,
+    warnings: Vec<Warning>,
     /// Lines after the figures.
     lines: Vec<String>,
     files: usize,
@@ -76,16 +76,11 @@ pub(super) fn write_results(
     match prepared {
         Prepared::Bearings { lists, .. } => {
             let scene = lists.scene;
-            if let Some(simulation) = session.motion.bearing() {
-                said.remarks = remarks::of_run(scene, simulation);
-            }
-            said.remarks.extend(between_rows(scene, session.clock.row_interval()));
-            said.remarks.extend(beyond_bushings(scene, session));
+            said.warnings = of_run(scene, session);
             if scene.common().dynamics.plots.contains(&RunPlot::RunUp) {
-                said.remarks.extend(without_run_up(&table));
+                said.lines.extend(without_run_up(&table).map(|why| format!("note: {why}")));
             }
             housing_results(folder, prepared, session, &table, &mut said)?;
-            said.sections.push(("remarks".into(), json!(said.remarks)));
         }
         Prepared::Solid { .. } => {
             // Of steps that stopped on the way the state at the last row is not at hand.
@@ -99,7 +94,8 @@ pub(super) fn write_results(
             rubber_results(prepared, session, &mut said)?;
         }
     }
-    let remarks = start.elapsed().as_secs_f64();
+    said.sections.push(("warnings".into(), json!(said.warnings)));
+    let warnings = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let spectra = spectra(prepared, session, &table);
     let plots = pictures(folder, prepared, session, &table, &spectra)?;
@@ -107,7 +103,7 @@ pub(super) fn write_results(
         ("read".into(), seconds.read),
         ("start".into(), seconds.start),
         ("simulate".into(), seconds.simulate),
-        ("remarks".into(), remarks),
+        ("warnings".into(), warnings),
         ("plots".into(), start.elapsed().as_secs_f64()),
     ];
     stages.extend(prepared.seconds());
@@ -132,16 +128,18 @@ pub(super) fn write_results(
     };
     let written = write_run_results(folder, session, &table, &spectra, &report)?;
     say(&key_figures(session, &table, seconds.simulate))?;
-    for remark in &said.remarks {
-        say(&format!("note: {remark}\n"))?;
-    }
+    say(&lines(&said.warnings))?;
     for line in &said.lines {
         say(&format!("{line}\n"))?;
     }
     // State beside them.
     let fields = std::fs::read_dir(folder.join(FOLDER)).map_or(0, |files| files.count() + 1);
     let files = written.len() + plots.len() + fields + said.files + 1;
-    say(&format!("wrote {files} files to {}\n", folder.display()))
+    say(&format!("wrote {files} files to {}\n", folder.display()))?;
+    match prepared {
+        Prepared::Bearings { lists, .. } => Ok(refuse_pushed_through(lists.scene, session)?),
+        Prepared::Solid { .. } | Prepared::Rubber { .. } => Ok(()),
+    }
 }
 
 /// Fields of the last row, where none were due there.
@@ -164,9 +162,8 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     let stress = stresses(model, &displacement);
     said.sections.push(("mass".into(), mass_section(model, built)?));
     said.sections.extend(field_sections(built, &displacement, &stress)?);
-    said.remarks = of_solid::of_run(session, model, &stress);
-    said.remarks.extend(cycles_between_rows(scene, session));
-    said.sections.push(("remarks".into(), json!(said.remarks)));
+    said.warnings = of_solid::of_run(session, model, &stress);
+    said.warnings.extend(cycles_between_rows(scene, session));
     Ok(())
 }
 
@@ -180,14 +177,13 @@ fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fa
     let stress = rubber_stresses(moving.solid.model(), state)?;
     said.sections.push(("mass".into(), rubber_mass(&mesh.setup, built)?));
     said.sections.extend(field_sections(built, &state.displacement, &stress)?);
-    said.remarks = of_solid::of_rubber(moving.solid.model(), &state.displacement)?;
-    said.remarks.extend(cycles_between_rows(scene, session));
-    said.sections.push(("remarks".into(), json!(said.remarks)));
+    said.warnings = of_solid::of_rubber(moving.solid.model(), &state.displacement)?;
+    said.warnings.extend(cycles_between_rows(scene, session));
     Ok(())
 }
 
 /// Loads and supports of a solid by itself that swing faster than its rows show.
-fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<String> {
+fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<Warning> {
     let held = scene.held.iter().flat_map(|held| {
         held.motion.iter().flatten().map(|motion| (format!("the set \"{}\"", held.set), motion))
     });
@@ -200,7 +196,7 @@ fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<String> 
     });
     let cycles = held.chain(loads).map(|(what, profile)| (what, profile.cycles()));
     let (what, frequency) = cycles.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    folded(&what, frequency, session.clock.row_interval())
+    aliased(&what, frequency, session.clock.row_interval())
 }
 
 /// Fields of the last state of housings and shafts in elements, the nodes of the bores, and what leaving out inertia changes.
@@ -223,19 +219,11 @@ fn housing_results(
         write_last_fields(folder, prepared, session)?;
     }
     let mut of_all = Map::new();
-    let mut remarks = Vec::new();
     for (number, housing) in housings.iter().enumerate() {
         let mut sections = Vec::new();
         match way {
             Way::Course(bores, _) => {
                 sections.extend(equilibrium(&bores[number], housing, session, number)?);
-                if let Motion::Course(course) = &session.motion
-                    && let Some(moment) = &course.latest
-                {
-                    let (state, displacement) =
-                        (&moment.solution.seats[number], course.displacement(number));
-                    remarks.extend(housing.beyond_normals(&bores[number], &displacement, state));
-                }
             }
             Way::Reduced(shapes) => {
                 let cut = &shapes.reductions[number].cut_off;
@@ -243,7 +231,7 @@ fn housing_results(
                 let name = if housing.name.is_some() { "shapes" } else { "reduced_housing" };
                 sections.push((name.into(), reduced_section(cut, &excitations(scene))?));
                 let found = pressed_by(table, &housing.name);
-                remarks.extend(shapes.beyond(housings, number, found).filter(|_| is_sound));
+                said.warnings.extend(shapes.beyond(housings, number, found).filter(|_| is_sound));
             }
             Way::Explicit | Way::Rigid => {
                 sections.push(("seat".into(), seat_section(&housing.setup)?));
@@ -256,14 +244,9 @@ fn housing_results(
             sections.extend(field_sections(&housing.built, &displacement, &stress)?);
             let own = match way {
                 Way::Course(..) => of_solid::of_equilibrium(model, &displacement, &stress),
-                _ => of_solid::of_motion(model, &displacement, &stress),
+                _ => of_solid::of_motion(model, &stress),
             };
-            remarks.extend(own.iter().map(|said| format!("{}{said}", housing.before())));
-            if let Motion::Bearing(moving) = &session.motion {
-                let (system, t) = (&moving.system, moving.time);
-                let off = housing.beyond_normals_in_steps(system, number, &displacement, t);
-                remarks.extend(off);
-            }
+            said.warnings.extend(own.into_iter().map(|of| of.named(&housing.before())));
             let nodes = bore_nodes(&session.motion, number, model);
             bore_series(&nodes)?.write_csv(&folder.join(housing.bore_file()))?;
             said.files += 1;
@@ -278,10 +261,6 @@ fn housing_results(
     if !of_all.is_empty() {
         said.sections.push(("housings".into(), Value::Object(of_all)));
     }
-    if is_sound {
-        said.sections.push(("housing_remarks".into(), json!(remarks)));
-    }
-    said.remarks.append(&mut remarks);
     if let Motion::Course(course) = &session.motion {
         inertia_results(scene, course, housings, said)?;
     }

@@ -2,7 +2,6 @@
 
 pub mod check;
 pub mod echo;
-pub mod left_out;
 pub mod modes;
 pub mod plan;
 pub mod statics;
@@ -64,11 +63,6 @@ pub fn mesh_notes(built: &BuiltMesh) -> Vec<String> {
 /// Says these before results.
 pub fn say_mesh_notes(built: &BuiltMesh) -> Result<(), Box<dyn Error>> {
     mesh_notes(built).iter().try_for_each(|note| say(&format!("note: {note}\n")))
-}
-
-/// Says these after results.
-pub fn say_remarks(remarks: &[String]) -> Result<(), Box<dyn Error>> {
-    remarks.iter().try_for_each(|remark| say(&format!("note: {remark}\n")))
 }
 
 pub fn title(scene: &SolidScene) -> String {

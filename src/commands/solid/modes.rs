@@ -1,6 +1,6 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
-use super::{left_out, plan, prepare, record, say_mesh_notes, say_remarks};
+use super::{plan, prepare, record, say_mesh_notes};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
@@ -9,7 +9,8 @@ use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::{file_name, write_list, write_mode};
 use bearing_dynamics::output::results::pretty;
-use bearing_dynamics::output::{remarks, summary::solid as summary};
+use bearing_dynamics::output::summary::solid as summary;
+use bearing_dynamics::output::warnings::{lines, solid::of_modes};
 use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::Law;
 use bearing_dynamics::solver::solid::foretold;
@@ -44,9 +45,8 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     let mut record = record(scene, plan::items(scene, &prepared, plan::Of::Modes), seconds)?;
     record.ran.solids = vec![found.ran];
     let (mut summary, series) = summary::modes(&model, built, &found, &record)?;
-    let mut remarks = remarks::of_modes(&model, &found);
-    remarks.extend(left_out::of_motion(scene));
-    summary["remarks"] = json!(remarks);
+    let warnings = of_modes(&model, &found);
+    summary["warnings"] = json!(warnings);
     say_mesh_notes(built)?;
     let mut text = "mode        frequency, Hz\n".to_string();
     for (index, mode) in found.modes.iter().enumerate() {
@@ -59,7 +59,7 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
         let _ = writeln!(text, "{:>4} {:>20.6}{rigid}", index + 1, mode.frequency);
     }
     say(&text)?;
-    say_remarks(&remarks)?;
+    say(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let mut steps = Vec::new();

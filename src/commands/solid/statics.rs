@@ -1,6 +1,6 @@
 //! `bearing statics` of a solid.
 
-use super::{Prepared, left_out, plan, prepare, record, say_mesh_notes, say_remarks};
+use super::{Prepared, plan, prepare, record, say_mesh_notes};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::watched;
@@ -11,7 +11,8 @@ use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::series::Series;
-use bearing_dynamics::output::{remarks, summary::solid as summary};
+use bearing_dynamics::output::summary::solid as summary;
+use bearing_dynamics::output::warnings::{lines, solid::of_equilibrium};
 use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::Law;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
@@ -65,13 +66,11 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     record.ran.solids = vec![solution.ran];
     let (mut summary, series) =
         summary::statics(&model, setup, built, &solution, &stress, &record)?;
-    let mut remarks = remarks::of_equilibrium(&model, &solution.displacement, &stress);
-    remarks.extend(left_out::of_time(&setup.problem, 0.0, "at t = 0, where `statics` looks"));
-    remarks.extend(left_out::of_motion(scene));
-    summary["remarks"] = json!(remarks);
+    let warnings = of_equilibrium(&model, &solution.displacement, &stress);
+    summary["warnings"] = json!(warnings);
     say_mesh_notes(built)?;
     say(&table(&summary))?;
-    say_remarks(&remarks)?;
+    say(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     write(&folder, &built.mesh, &solution.displacement, &stress, &series)?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;

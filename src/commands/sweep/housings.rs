@@ -7,7 +7,8 @@ use crate::commands::assembly::housing::Housing;
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::fields::stresses;
 use bearing_dynamics::output::recorder::seat::{SeatRow, prefix};
-use bearing_dynamics::output::remarks::of_equilibrium;
+use bearing_dynamics::output::warnings::Warning;
+use bearing_dynamics::output::warnings::solid::of_equilibrium;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::scene::bore_shape::BorePlace;
 use bearing_dynamics::scene::housing_problem::setup;
@@ -89,15 +90,15 @@ impl Kept {
         (&self.housings, &self.bores)
     }
 
-    /// What each adds to the row, in the order of [`columns`], and to the remarks.
-    pub fn row(&self, seats: &[BoreState]) -> (Vec<f64>, Vec<String>) {
-        let (mut row, mut remarks) = (Vec::new(), Vec::new());
+    /// What each adds to the row, in the order of [`columns`], and the warnings.
+    pub fn row(&self, seats: &[BoreState]) -> (Vec<f64>, Vec<Warning>) {
+        let (mut row, mut warnings) = (Vec::new(), Vec::new());
         for ((of, bore), state) in self.housings.iter().zip(&self.bores).zip(seats) {
             let seat = SeatRow::of_equilibrium(bore, state);
             let displacement = bore.displacement(&state.loads);
             let stress = stresses(&of.setup.model, &displacement);
             let said = of_equilibrium(&of.setup.model, &displacement, &stress);
-            remarks.extend(said.iter().map(|said| format!("{}{said}", of.before())));
+            warnings.extend(said.into_iter().map(|said| said.named(&of.before())));
             let [x, y, z, tilt_y, tilt_z] = bore.race(&state.pose);
             row.extend([x, y, z].map(|place| 1e6 * place));
             row.extend([tilt_y, tilt_z].map(f64::to_degrees));
@@ -107,7 +108,7 @@ impl Kept {
             row.push(1e-6 * seat.peak_pressure);
             row.push(1e-6 * stress.cell_von_mises.iter().copied().fold(0.0, f64::max));
         }
-        (row, remarks)
+        (row, warnings)
     }
 }
 

@@ -16,33 +16,29 @@ pub struct Chunk {
     /// Rows of the table, in order of their points.
     pub rows: Vec<Vec<f64>>,
     pub failures: Vec<Failure>,
-    /// Of solved points, one of each kind.
-    pub remarks: Vec<Remark>,
+    /// On solved points, one of each code.
+    pub warnings: Vec<PointsWarned>,
 }
 
-/// What is said of some points with other numbers.
+/// A warning on one or more points.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Remark {
-    /// As of the first point of which it is said.
+pub struct PointsWarned {
+    pub code: String,
+    /// On the first point.
     pub text: String,
     pub point: usize,
-    /// Number of points of which it is said.
+    /// Number of points with this code.
     pub points: usize,
 }
 
-/// Adds what is said of points, those of a kind to the first of it.
-pub fn gather(remarks: &mut Vec<Remark>, more: impl IntoIterator<Item = Remark>) {
-    for said in more {
-        match remarks.iter_mut().find(|first| kind(&first.text) == kind(&said.text)) {
-            Some(first) => first.points += said.points,
-            None => remarks.push(said),
+/// Adds warnings on points, those of a code to the first of it.
+pub fn gather(warnings: &mut Vec<PointsWarned>, more: impl IntoIterator<Item = PointsWarned>) {
+    for warned in more {
+        match warnings.iter_mut().find(|first| first.code == warned.code) {
+            Some(first) => first.points += warned.points,
+            None => warnings.push(warned),
         }
     }
-}
-
-/// A remark without its numbers, lists of balls or not.
-fn kind(text: &str) -> String {
-    text.replace("balls", "ball").chars().filter(|c| c.is_alphabetic()).collect()
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -14,11 +14,12 @@ mod report;
 use super::earlier::{Writes, claimed};
 use super::{CommandResult, Outcome, interruption, reach, results_folder, say};
 use bearing_dynamics::output::Column;
+use bearing_dynamics::output::warnings::Warning;
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
 use housings::Kept;
 use indicatif::{ProgressBar, ProgressStyle};
-use journal::{Chunk, Journal, Remark, gather};
+use journal::{Chunk, Journal, PointsWarned, gather};
 use rayon::prelude::*;
 use std::error::Error;
 use std::ops::Range;
@@ -150,9 +151,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
             "note: {key} changes no column: points that differ in it alone are the same\n"
         ))?;
     }
-    for remark in report::remarks(&chunks) {
-        let Remark { text, point, points } = remark;
-        say(&format!("note: {text} (point {point}, {points} of {} in all)\n", grid.len()))?;
+    for PointsWarned { code, text, point, points } in report::warnings(&chunks) {
+        let all = grid.len();
+        say(&format!("warning[{code}]: {text} (point {point}, {points} of {all} in all)\n"))?;
     }
     let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
     match failures.first() {
@@ -195,18 +196,20 @@ fn solve_chunk(
     (index, range): (usize, Range<usize>),
     cold: bool,
 ) -> Chunk {
-    let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new(), remarks: Vec::new() };
+    let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new(), warnings: Vec::new() };
     let (mut neighbour, mut kept) = (None, Kept::default());
     for point in range {
         match point::solve(document, grid, (point, header), neighbour.as_deref(), &mut kept) {
             Ok(solved) => {
                 chunk.rows.push(solved.row);
-                let said = solved.remarks.into_iter();
+                let warned = solved.warnings.into_iter().map(|Warning { code, text }| {
+                    PointsWarned { code: code.name().into(), text, point, points: 1 }
+                });
                 let mut here = Vec::new();
-                gather(&mut here, said.map(|text| Remark { text, point, points: 1 }));
-                // Two bodies may have one kind of remark each: it is of one point.
-                let once = here.into_iter().map(|remark| Remark { points: 1, ..remark });
-                gather(&mut chunk.remarks, once);
+                gather(&mut here, warned);
+                // Two bodies may have one code each: it is one point.
+                let once = here.into_iter().map(|warned| PointsWarned { points: 1, ..warned });
+                gather(&mut chunk.warnings, once);
                 neighbour = if cold { None } else { solved.start_for_neighbour };
             }
             Err(message) => {

@@ -4,10 +4,11 @@ use super::grid::Grid;
 use super::housings::{self, Kept};
 use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
 use crate::commands::assembly::lists::Lists;
-use crate::commands::remarks::{of_assembly as of_several, of_statics};
+use crate::commands::warnings::of_equilibrium;
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::assembly_results::{key, readable};
 use bearing_dynamics::output::results::load_zone_of;
+use bearing_dynamics::output::warnings::Warning;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::assembly::AssemblyScene;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
@@ -15,12 +16,12 @@ use bearing_dynamics::solver::statics::{
     AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticSolution,
 };
 use nalgebra::SVector;
+use std::collections::BTreeSet;
 use std::error::Error;
 
 pub struct Solved {
     pub row: Vec<f64>,
-    /// What `statics` says of such a point.
-    pub remarks: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// `None` where the position is one of many and a neighbour should look for its own.
     pub start_for_neighbour: Option<Vec<SVector<f64, 5>>>,
 }
@@ -61,22 +62,25 @@ fn solve_scene(
         found => found?,
     };
     let solution = moment.solution;
-    let mut remarks = match scene.one_still() {
-        Some(_) => of_statics(scene.common(), &still, &solution),
-        None => of_several(scene, &still, &solution),
-    };
+    let mut warnings = of_equilibrium(scene, &still, &solution)?;
     let determinate = solution.determinacy == Determinacy::Determinate;
     let start_for_neighbour =
         (determinate && housings.is_empty()).then(|| solution.coordinates.clone());
     let (of_housings, said) = kept.row(&solution.seats);
-    remarks.extend(said);
+    warnings.extend(said);
     let mut row = match scene.one_still() {
         Some(_) => of_bearing(&StaticSolution::from(solution)),
         None => of_assembly(&still, &readable(lists.assembly()?, &still, &solution)),
     };
     row.extend(of_housings);
-    row.push(remarks.len() as f64);
-    Ok(Solved { row, remarks, start_for_neighbour })
+    row.push(codes(&warnings));
+    Ok(Solved { row, warnings, start_for_neighbour })
+}
+
+/// Codes of warnings as one number, two digits each: 305 for W03 and W05. The first seven, which a number of a table holds exactly.
+fn codes(warnings: &[Warning]) -> f64 {
+    let numbers: BTreeSet<usize> = warnings.iter().map(|of| of.code.number()).collect();
+    numbers.into_iter().take(7).fold(0.0, |codes, number| 100.0 * codes + number as f64)
 }
 
 /// Columns that follow those of the varied keys.
@@ -116,7 +120,7 @@ pub fn columns(grid: &Grid, scene: Option<&AssemblyScene>) -> Vec<Column> {
         }
     }
     columns.extend(scene.map_or_else(Vec::new, housings::columns));
-    columns.push(Column::new("remarks", "1"));
+    columns.push(Column::new("warnings", "1"));
     columns
 }
 

@@ -1,7 +1,7 @@
 //! What a sweep leaves behind: `sweep.csv`, the same as `.npy`, and `sweep.json`.
 
 use super::grid::Grid;
-use super::journal::{Chunk, Remark, gather};
+use super::journal::{Chunk, PointsWarned, gather};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::{Column, Series, write_atomic};
 use bearing_dynamics::scene::keys::{self, Kind};
@@ -66,11 +66,11 @@ pub fn remove_earlier(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What is said of points, each kind once.
-pub fn remarks(chunks: &[Chunk]) -> Vec<Remark> {
-    let mut remarks = Vec::new();
-    gather(&mut remarks, chunks.iter().flat_map(|chunk| chunk.remarks.iter().cloned()));
-    remarks
+/// Warnings on points, each code once.
+pub fn warnings(chunks: &[Chunk]) -> Vec<PointsWarned> {
+    let mut warnings = Vec::new();
+    gather(&mut warnings, chunks.iter().flat_map(|chunk| chunk.warnings.iter().cloned()));
+    warnings
 }
 
 /// Differences below this part of the largest number in its unit are what a search for an equilibrium leaves.
@@ -80,7 +80,7 @@ const ALIKE: f64 = 1e-9;
 pub fn idle_keys(grid: &Grid, columns: &[Column], chunks: &[Chunk]) -> Vec<String> {
     let first = 1 + grid.axes.len();
     let results: Vec<usize> =
-        (first..columns.len()).filter(|&i| columns[i].name != "remarks").collect();
+        (first..columns.len()).filter(|&i| columns[i].name != "warnings").collect();
     let rows = || chunks.iter().flat_map(|chunk| &chunk.rows);
     let mut largest: HashMap<&str, f64> = HashMap::new();
     for row in rows() {
@@ -142,8 +142,8 @@ pub fn write(
     let failures = chunks.iter().flat_map(|chunk| &chunk.failures).map(|failure| {
         json!({ "point": failure.point, "at": values(grid, failure.point), "message": failure.message })
     });
-    let remarks = remarks(chunks).into_iter().map(|Remark { text, point, points }| {
-        json!({ "remark": text, "point": point, "at": values(grid, point), "points": points })
+    let warnings = warnings(chunks).into_iter().map(|PointsWarned { code, text, point, points }| {
+        json!({ "code": code, "text": text, "point": point, "at": values(grid, point), "points": points })
     });
     let summary = json!({
         "program": env!("CARGO_PKG_NAME"),
@@ -154,7 +154,7 @@ pub fn write(
         "solved": series.data().nrows(),
         "complete": record.complete,
         "failures": failures.collect::<Vec<_>>(),
-        "remarks": remarks.collect::<Vec<_>>(),
+        "warnings": warnings.collect::<Vec<_>>(),
         "threads": record.threads,
         "seconds": record.seconds,
     });

@@ -10,7 +10,7 @@ use crate::ch2_housing::bore_contact::{
     ContactNode, ContactSum, Cylinder, Frame, Penalty, contact,
 };
 use crate::kinematics::Pose;
-use crate::kinematics::vec3::{Vec3, add_scaled, dot, scale};
+use crate::kinematics::vec3::{Vec3, dot, scale};
 use crate::solver::mount::Mount;
 use crate::solver::profile::Profile;
 
@@ -130,27 +130,5 @@ impl SeatNow {
             },
         );
         RaceLoads { force: self.contact.force, moment: self.contact.moment }
-    }
-
-    /// By how much the nodes that touch are farther from the axis of the race at time `t` than their motion along normals makes them, m,
-    /// each with its penetration; `moved` are whole displacements of the solid's nodes, m. What lies along the axis does not matter.
-    pub fn beyond_normals<'a>(
-        &'a self,
-        seat: &'a Seat,
-        solid: &'a ReducedSolid,
-        t: f64,
-        moved: impl Fn(u32) -> Vec3 + 'a,
-    ) -> impl Iterator<Item = [f64; 2]> + 'a {
-        let surface = &solid.surfaces[seat.surface];
-        self.touching.iter().map(move |touching| {
-            let node = &surface.nodes[touching.node];
-            let penetration = touching.load / touching.along / touching.stiffness;
-            let distance = seat.radius.value(t) - penetration;
-            let whole = moved(node.node);
-            let across = add_scaled(whole, -dot(whole, node.normal), node.normal);
-            let across = add_scaled(across, -dot(across, seat.axis), seat.axis);
-            let place = add_scaled(across, distance, touching.normal);
-            [dot(place, place).sqrt() - distance, penetration]
-        })
     }
 }

@@ -127,51 +127,16 @@ pub struct Placed {
     pub at: Vec3,
 }
 
-/// What a linear law is asked to hold for.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Strained {
-    /// Largest von Mises stress of an element, Pa.
-    pub stress: Placed,
-    /// Pa.
-    pub youngs_modulus: f64,
-    /// Largest displacement, m; of a body that is free to move the largest beside its mean.
-    pub displacement: Placed,
-    /// Diagonal of the box around the undeformed body, m.
-    pub size: f64,
-}
-
-impl Strained {
-    /// Of a state, from the stresses of its elements.
-    pub fn of(model: &SolidModel, displacement: &[Vec3], cells: &[Sym3]) -> Strained {
-        let problem = &model.problem;
-        let youngs_modulus = problem.material.youngs_modulus();
-        let mut stress = Placed::default();
-        for (element, cell) in cells.iter().enumerate() {
-            let value = von_mises(cell);
-            if value > stress.value {
-                stress = Placed { value, at: centre(problem, element) };
-            }
+/// Largest von Mises stress of the elements, Pa, from their stresses.
+pub fn largest_von_mises(model: &SolidModel, cells: &[Sym3]) -> Placed {
+    let mut most = Placed::default();
+    for (element, cell) in cells.iter().enumerate() {
+        let value = von_mises(cell);
+        if value > most.value {
+            most = Placed { value, at: centre(&model.problem, element) };
         }
-        let free = problem.prescribed.is_empty();
-        let count = displacement.len() as f64;
-        let mean = [0, 1, 2].map(|i: usize| match free {
-            true => displacement.iter().map(|u| u[i]).sum::<f64>() / count,
-            false => 0.0,
-        });
-        let mut moved = Placed::default();
-        for (u, at) in displacement.iter().zip(&problem.nodes) {
-            let value = norm([u[0] - mean[0], u[1] - mean[1], u[2] - mean[2]]);
-            if value > moved.value {
-                moved = Placed { value, at: *at };
-            }
-        }
-        Strained { stress, youngs_modulus, displacement: moved, size: size(model) }
     }
-
-    /// Strain of a bar that is pulled to the largest stress.
-    pub fn strain(&self) -> f64 {
-        self.stress.value / self.youngs_modulus
-    }
+    most
 }
 
 /// Largest displacement, m.

@@ -1,0 +1,375 @@
+//! Warnings of commands on bearings: one set for equilibria and runs.
+
+use crate::commands::bushing_remarks::{beyond_bushings, pushed};
+use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
+use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use bearing_dynamics::output::session::Session;
+use bearing_dynamics::output::warnings::{Warning, WarningCode};
+use bearing_dynamics::scene::assembly::{AssemblyScene, BushingStepping, PlacedBearing};
+use bearing_dynamics::scene::excitations::{excitations, largest};
+use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
+use bearing_dynamics::scene::{CageInRun, RunPlot, Scene};
+use bearing_dynamics::solver::clock::{to_digits, told};
+use bearing_dynamics::solver::dynamics::assembly::Bearing;
+use bearing_dynamics::solver::dynamics::bounds::FARTHEST_BENT;
+use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
+use bearing_dynamics::solver::dynamics::model::Rotation;
+use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
+use bearing_dynamics::solver::statics::{AssemblySolution, BallState, ContactState, Determinacy};
+use std::error::Error;
+use std::f64::consts::{PI, TAU};
+
+/// Pressure above which ISO 76 expects permanent deformation in ball bearings, Pa.
+const STATIC_RATING: f64 = 4200e6;
+/// A ball this close to the bottom of the groove, in rad, needs no shoulder.
+const BOTTOM: f64 = 1e-6;
+/// How far beyond the nominal contact angle, rad, shoulders that are not given reach at least in an
+/// angular-contact bearing.
+const BEYOND_NOMINAL: f64 = 15.0 / 180.0 * PI;
+/// Smallest centrifugal force on a ball, as a part of the largest ball load, that is warned of.
+const CENTRIFUGAL: f64 = 0.05;
+
+/// What warnings on the balls of a bearing are made of; times are those of a run, s.
+#[derive(Clone, Debug, Default)]
+struct Seen {
+    /// Inner, outer: largest load, N; farthest end of a contact ellipse and the contact angle there, rad.
+    loads: [Extreme; 2],
+    edges: [Extreme; 2],
+    edge_angles: [f64; 2],
+    /// Balls loaded at a negative contact angle, counted from 1.
+    reversed: Vec<usize>,
+    /// Load between two balls, N, and its pressure, Pa.
+    between: Extreme,
+    between_pressure: f64,
+    moves: bool,
+}
+
+impl Seen {
+    fn when(&self, of: &Extreme) -> String {
+        if self.moves { format!(" at t = {} s", told(of.time)) } else { String::new() }
+    }
+}
+
+/// Warnings on an equilibrium.
+///
+/// # Errors
+/// A section that is bent too far, a bushing that is pushed through its wall.
+pub fn of_equilibrium(
+    scene: &AssemblyScene,
+    assembly: &StaticAssembly,
+    solution: &AssemblySolution,
+) -> Result<Vec<Warning>, Box<dyn Error>> {
+    refuse_bent(assembly, solution)?;
+    let mut warnings = pushed(scene, assembly, solution)?;
+    if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
+        let text = format!(
+            "the position is one of many, because {} directions meet no stiffness: load or preload the bearings, or prescribe these coordinates",
+            free_directions.len()
+        );
+        warnings.push(Warning::new(WarningCode::IndeterminatePosition, text));
+    }
+    if solution.saddles_left > 0 {
+        let text = "an unstable equilibrium was left for a stable one next to it, whose mirror image is an equilibrium too";
+        warnings.push(Warning::new(WarningCode::SaddleLeft, text));
+    }
+    let bearings = scene.bearings.iter().zip(&assembly.bearings).zip(&solution.bearings);
+    for ((placed, bearing), state) in bearings {
+        let contacts = [&bearing.inner_contact, &bearing.outer_contact];
+        let own = shared(&placed.scene, contacts, &at_rest(&placed.scene, &state.balls));
+        let own = own.into_iter().chain(centrifugal_left_out(&placed.scene, &state.balls));
+        warnings.extend(named(placed, own));
+    }
+    Ok(warnings)
+}
+
+/// Refuses a section that is turned against its body by more than small bending allows.
+fn refuse_bent(
+    assembly: &StaticAssembly,
+    solution: &AssemblySolution,
+) -> Result<(), Box<dyn Error>> {
+    for (body, own) in assembly.bodies.iter().zip(&solution.coordinates) {
+        let Place::Section(of) = &body.place else { continue };
+        let whole = &solution.coordinates[assembly.shafts[of.shaft].body];
+        let turn = libm::hypot(own[3] - whole[3], own[4] - whole[4]);
+        if turn > FARTHEST_BENT {
+            return Err(format!(
+                "the section of {} is turned by {:.1} deg against its body. Allowed: up to {:.1} deg, because bending is linear. Hint: check loads                  and their units",
+                body.name,
+                turn.to_degrees(),
+                FARTHEST_BENT.to_degrees()
+            )
+            .into());
+        }
+    }
+    Ok(())
+}
+
+/// Largest loads and contact ellipses in an equilibrium.
+fn at_rest(scene: &Scene, balls: &[BallState]) -> Seen {
+    let geometry = &scene.geometry;
+    let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
+    let mut seen = Seen::default();
+    let reversed =
+        |contact: &ContactState| contact.normal_load > 0.0 && contact.contact_angle < -BOTTOM;
+    for (ball, state) in balls.iter().enumerate() {
+        for (side, contact) in [&state.inner, &state.outer].into_iter().enumerate() {
+            take(&mut seen.loads[side], contact.normal_load, ball);
+            let angle = contact.contact_angle.abs();
+            if contact.normal_load > 0.0
+                && take(&mut seen.edges[side], angle + contact.semi_major / grooves[side], ball)
+            {
+                seen.edge_angles[side] = angle;
+            }
+        }
+        if reversed(&state.inner) || reversed(&state.outer) {
+            seen.reversed.push(ball + 1);
+        }
+    }
+    seen
+}
+
+/// Warnings on a run of bearings, from all its steps and rows.
+pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
+    let mut warnings = of_bushings(scene);
+    if let Some(simulation) = session.motion.bearing() {
+        let bearings = simulation.system.assembly.bearings.iter().zip(&simulation.extremes);
+        for (placed, (bearing, extremes)) in scene.bearings.iter().zip(bearings) {
+            let contacts = [&bearing.inner_contact, &bearing.outer_contact];
+            let own = shared(&placed.scene, contacts, &in_motion(bearing, extremes));
+            warnings.extend(named(placed, own.into_iter()));
+        }
+    }
+    warnings.extend(between_rows(scene, session.clock.row_interval()));
+    warnings.extend(beyond_bushings(scene, session));
+    warnings
+}
+
+/// With the name of the bearing that they are about.
+fn named<'w>(
+    placed: &'w PlacedBearing,
+    warnings: impl Iterator<Item = Warning> + 'w,
+) -> impl Iterator<Item = Warning> + 'w {
+    let name = placed.name.as_ref().map_or(String::new(), |name| format!("bearing {name}: "));
+    warnings.map(move |warning| warning.named(&name))
+}
+
+/// Largest loads and contact ellipses of all steps.
+fn in_motion(problem: &Bearing, extremes: &Extremes) -> Seen {
+    let races = extremes.races.iter().filter(|race| race.reversed.value > BOTTOM);
+    let mut reversed: Vec<usize> = races.map(|race| race.reversed.ball + 1).collect();
+    reversed.sort_unstable();
+    reversed.dedup();
+    Seen {
+        loads: extremes.races.map(|race| race.load),
+        edges: extremes.races.map(|race| race.edge),
+        edge_angles: extremes.races.map(|race| race.edge_angle),
+        reversed,
+        between: extremes.between_balls,
+        between_pressure: problem.ball_contact.map_or(0.0, |law| {
+            peak_pressure(&law, problem.geometry.ball_radius, extremes.between_balls.value)
+        }),
+        moves: true,
+    }
+}
+
+/// Whether `value` is the largest so far.
+fn take(largest: &mut Extreme, value: f64, ball: usize) -> bool {
+    let larger = value > largest.value;
+    if larger {
+        *largest = Extreme { value, ball, time: 0.0 };
+    }
+    larger
+}
+
+/// Warnings that equilibrium and motion have in common.
+fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Vec<Warning> {
+    let all = [
+        on_open_side(scene, seen),
+        past_shoulder(scene, seen),
+        above_rating(scene, contacts, seen),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+fn above_rating(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Option<Warning> {
+    let pressure =
+        |side: usize| contact_ellipse(contacts[side], seen.loads[side].value).peak_pressure;
+    let side = if pressure(1) > pressure(0) { 1 } else { 0 };
+    let between = seen.between_pressure > pressure(side);
+    let (highest, of, where_) = match between {
+        true => (seen.between_pressure, &seen.between, " between two balls"),
+        false => (pressure(side), &seen.loads[side], ""),
+    };
+    let advice = match between && matches!(scene.dynamics.cage, CageInRun::LeftOut(_)) {
+        true => "add [bearing.cage], because nothing else keeps the balls apart",
+        false => "check loads, speeds, clearance and their units",
+    };
+    (highest > STATIC_RATING).then(|| {
+        let text = format!(
+            "contact pressure {:.0} MPa{where_}{} exceeds the 4200 MPa of ISO 76: {advice}",
+            1e-6 * highest,
+            seen.when(of)
+        );
+        Warning::new(WarningCode::PressureAboveRating, text)
+    })
+}
+
+/// An angular-contact bearing has a shoulder on one side of each groove only; the model's groove is
+/// a whole torus and carries on either side.
+fn on_open_side(scene: &Scene, seen: &Seen) -> Option<Warning> {
+    if scene.geometry.contact_angle <= 0.0 || seen.reversed.is_empty() {
+        return None;
+    }
+    let numbers: Vec<String> = seen.reversed.iter().map(usize::to_string).collect();
+    let text = format!(
+        "ball{} {} loaded at a negative contact angle, where an angular-contact bearing has no shoulder: preload it along +x",
+        if numbers.len() == 1 { "" } else { "s" },
+        numbers.join(", ")
+    );
+    Some(Warning::new(WarningCode::LoadOnOpenSide, text))
+}
+
+/// Where the groove of each race ends, rad from its bottom, and whether the scene says so.
+fn shoulders(scene: &Scene) -> [(f64, bool); 2] {
+    let sizes = &scene.dimensions;
+    let races = [&sizes.inner_race, &sizes.outer_race];
+    std::array::from_fn(|side| {
+        let (race, shoulder) = (races[side], &scene.dynamics.shoulders[side]);
+        let height = (shoulder.radius - race.radius).abs();
+        let end = libm::acos((1.0 - height / race.groove_radius).max(-1.0));
+        let nominal = scene.geometry.contact_angle;
+        let usual = if nominal > 0.0 { end.max(nominal + BEYOND_NOMINAL) } else { end };
+        (if shoulder.given { end } else { usual }, shoulder.given)
+    })
+}
+
+/// The model's groove has no shoulder; of a contact past the real one's a part is missing.
+fn past_shoulder(scene: &Scene, seen: &Seen) -> Option<Warning> {
+    let ends = shoulders(scene);
+    let past = |side: usize| seen.edges[side].value - ends[side].0;
+    let side = if past(1) > past(0) { 1 } else { 0 };
+    if past(side).is_nan() || past(side) <= 0.0 {
+        return None;
+    }
+    let (edge, race) = (&seen.edges[side], ["inner", "outer"][side]);
+    let (source, advice) = match ends[side].1 {
+        true => ("given", String::new()),
+        false => ("estimated", format!(", or give bearing.{race}_race.shoulder_radius")),
+    };
+    let text = format!(
+        "the contact of ball {} with the {race} race reaches {} from the bottom of the groove{} (contact angle {:.1} deg), past the shoulder at \
+         {:.1} deg ({source}): reduce load or tilt{advice}",
+        edge.ball + 1,
+        if edge.value < 0.5 * PI {
+            format!("{:.1} deg", edge.value.to_degrees())
+        } else {
+            "more than 90 deg".into()
+        },
+        seen.when(edge),
+        seen.edge_angles[side].to_degrees(),
+        ends[side].0.to_degrees()
+    );
+    Some(Warning::new(WarningCode::ContactPastShoulder, text))
+}
+
+/// A bearing that turns, solved without the centrifugal force of its balls.
+fn centrifugal_left_out(scene: &Scene, balls: &[BallState]) -> Option<Warning> {
+    let speed = orbital_speed(scene);
+    if scene.centrifugal || speed == 0.0 {
+        return None;
+    }
+    let force = ball_mass(scene) * speed * speed * scene.geometry.pitch_radius;
+    let loads = balls.iter().map(|ball| ball.inner.normal_load.max(ball.outer.normal_load));
+    let largest = loads.fold(0.0, f64::max);
+    // NaN is no force.
+    (force > CENTRIFUGAL * largest).then(|| {
+        let part = if largest > 0.0 {
+            format!("{:.1} % of the largest ball load", 100.0 * force / largest)
+        } else {
+            "while no ball is loaded".into()
+        };
+        let text = format!(
+            "the centrifugal force of a ball at this speed, {force:.3} N, is left out, {part}: write ball_forces.centrifugal = true"
+        );
+        Warning::new(WarningCode::CentrifugalForceLeftOut, text)
+    })
+}
+
+/// Rows that are too far apart for what drives the scene: what they show of it is folded to other frequencies.
+fn between_rows(scene: &AssemblyScene, interval: f64) -> Option<Warning> {
+    let end = scene.run().map_or(0.0, |run| run.end);
+    let turning = |rotation: &Rotation, unbalanced: bool| match rotation {
+        Rotation::Speed(speed) if unbalanced => largest(speed, end) / TAU,
+        _ => 0.0,
+    };
+    // Balls that pass are seen where spectra are looked at.
+    let spectra = scene.common().dynamics.plots.contains(&RunPlot::Spectrum);
+    let driven =
+        excitations(scene).into_iter().filter(|of| of.repeats && (spectra || !of.is_ripple));
+    let driven = driven.map(|of| (of.what, of.frequency));
+    let bodies = scene.bodies.iter().map(|body| {
+        let along = body.beam.iter().flat_map(|beam| &beam.unbalances);
+        let unbalanced = body.unbalance != 0.0 || along.clone().any(|(_, size, _)| *size != 0.0);
+        let frequency = turning(&body.race.rotation, unbalanced);
+        (format!("the unbalance of body.{}", body.name), frequency)
+    });
+    let races = scene.bearings.iter().map(|placed| {
+        let of = &placed.scene.dynamics;
+        let frequency = turning(&of.inner.rotation, of.unbalance != 0.0);
+        ("the unbalance of the inner race".to_string(), frequency)
+    });
+    let all = driven.chain(bodies).chain(races);
+    let (what, frequency) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    aliased(&what, frequency, interval)
+}
+
+/// Rows `interval` (s) apart that are too few for an excitation (Hz).
+pub fn aliased(what: &str, frequency: f64, interval: f64) -> Option<Warning> {
+    let seen = frequency * interval <= 0.5;
+    (!seen).then(|| {
+        let text = format!(
+            "rows are {} s apart, more than half a period of {what} ({} Hz): shorten numerics.output_interval, {} s for eight rows a period",
+            to_digits(interval, 3),
+            to_digits(frequency, 4),
+            to_digits(0.125 / frequency, 2)
+        );
+        Warning::new(WarningCode::RowsTooFarApart, text)
+    })
+}
+
+/// Warnings on bushings that a plan knows already.
+pub fn of_bushings(scene: &AssemblyScene) -> Vec<Warning> {
+    let in_steps = scene.springs.iter().filter(|spring| {
+        let elements = spring.bushing.as_ref().and_then(|of| of.elements.as_ref());
+        elements.is_some_and(|of| matches!(of.stepping, BushingStepping::Explicit { .. }))
+    });
+    let locking = in_steps.map(|spring| {
+        let text = format!(
+            "bushing {} is solved in four-node elements, which are stiffer than its rubber: compare with finer cells, or write method = \
+             \"implicit\"",
+            spring.name
+        );
+        Warning::new(WarningCode::FourNodeLocking, text)
+    });
+    faster_than_fitted(scene).into_iter().chain(locking).collect()
+}
+
+/// An excitation that is faster than the springs of a bushing were fitted for.
+fn faster_than_fitted(scene: &AssemblyScene) -> Option<Warning> {
+    let fitted = scene.springs.iter().filter_map(|spring| Some((spring, spring.bushing.as_ref()?)));
+    let fitted = fitted.filter(|(_, bushing)| bushing.elements.is_none());
+    let (spring, bushing) = fitted.min_by(|a, b| a.1.fastest.total_cmp(&b.1.fastest))?;
+    let driven = excitations(scene).into_iter().filter(|of| of.repeats);
+    let fast = driven.max_by(|a, b| a.frequency.total_cmp(&b.frequency))?;
+    (fast.frequency > bushing.fastest).then(|| {
+        let text = format!(
+            "{} ({} Hz) is above the {} Hz up to which the springs of bushing {} are fitted: raise spring.{}.bushing.fastest",
+            fast.what,
+            to_digits(fast.frequency, 4),
+            to_digits(bushing.fastest, 4),
+            spring.name,
+            spring.name
+        );
+        Warning::new(WarningCode::ExcitationFasterThanFit, text)
+    })
+}

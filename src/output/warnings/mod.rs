@@ -1,0 +1,205 @@
+//! Warnings: a code that scripts and tests look at, and a text for people.
+//!
+//! A warning exists only where an engineer would change something because of it. `docs/warnings.md` is made of [`TABLE`].
+
+pub mod solid;
+
+use serde::{Serialize, Serializer};
+use std::fmt;
+
+/// One warning of a command.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Warning {
+    pub code: WarningCode,
+    pub text: String,
+}
+
+impl Warning {
+    pub fn new(code: WarningCode, text: impl Into<String>) -> Warning {
+        Warning { code, text: text.into() }
+    }
+
+    /// With the name of what it is about in front of its text, such as "bearing left: ".
+    pub fn named(self, name: &str) -> Warning {
+        Warning { text: format!("{name}{}", self.text), ..self }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "warning[{}]: {}", self.code.name(), self.text)
+    }
+}
+
+/// Warnings as lines of text.
+pub fn lines(warnings: &[Warning]) -> String {
+    warnings.iter().map(|warning| format!("{warning}\n")).collect()
+}
+
+/// In the order of [`TABLE`]; the number is part of the code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum WarningCode {
+    IndeterminatePosition = 1,
+    SaddleLeft,
+    PressureAboveRating,
+    ContactPastShoulder,
+    LoadOnOpenSide,
+    CentrifugalForceLeftOut,
+    RowsTooFarApart,
+    MeshTooCoarse,
+    FourNodeLocking,
+    StressAboveElastic,
+    RubberVolume,
+    ChainsNearFullLength,
+    FewContactNodes,
+    BushingBeyondFit,
+    ExcitationFasterThanFit,
+    BeyondKeptModes,
+    WhirlUnstable,
+}
+
+impl WarningCode {
+    /// Number in the code, from 1.
+    pub fn number(self) -> usize {
+        self as usize
+    }
+
+    /// Such as `W07-rows-too-far-apart`.
+    pub fn name(self) -> &'static str {
+        TABLE[self.number() - 1].name
+    }
+}
+
+impl Serialize for WarningCode {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// What a code stands for.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    pub name: &'static str,
+    pub title: &'static str,
+    pub meaning: &'static str,
+    pub action: &'static str,
+}
+
+/// All codes, by number.
+pub const TABLE: [Entry; 17] = [
+    Entry {
+        name: "W01-indeterminate-position",
+        title: "Position not determined",
+        meaning: "Some directions of a body meet no stiffness, so its position in them is one of many. Frequencies and stiffnesses in these \
+                  directions are zero.",
+        action: "Load or preload the bearing, add a spring, or prescribe these coordinates.",
+    },
+    Entry {
+        name: "W02-saddle-left",
+        title: "Unstable equilibrium left",
+        meaning: "The first equilibrium found was a saddle point of the energy, and the search went on to a stable one next to it. The mirror \
+                  image of the result is an equilibrium too.",
+        action: "If the sign of the displacement matters, add a small load that selects one side.",
+    },
+    Entry {
+        name: "W03-pressure-above-rating",
+        title: "Contact pressure above 4200 MPa",
+        meaning: "The largest Hertz pressure exceeds 4200 MPa, at which ISO 76 expects permanent deformation of ball and raceway. The model \
+                  is elastic.",
+        action: "Check loads, speeds, clearance and their units. Between two balls: add a cage, because nothing else keeps them apart.",
+    },
+    Entry {
+        name: "W04-contact-past-shoulder",
+        title: "Contact ellipse past the shoulder",
+        meaning: "A contact ellipse extends past the edge of its groove. The model's groove has no edge, so the load there is overestimated \
+                  and the edge pressure is missing.",
+        action: "Reduce load or tilt. If the shoulder height was estimated, give `shoulder_radius` of the race.",
+    },
+    Entry {
+        name: "W05-load-on-open-side",
+        title: "Load on the open side of an angular-contact bearing",
+        meaning: "A ball carries load at a negative contact angle, where the real groove has no shoulder. The real bearing would come apart \
+                  there.",
+        action: "Preload the bearing along +x, or turn it round with `reversed`.",
+    },
+    Entry {
+        name: "W06-centrifugal-force-left-out",
+        title: "Centrifugal force of the balls left out",
+        meaning: "At this speed the centrifugal force of a ball is more than 5 % of the largest ball load, and the equilibrium leaves it out.",
+        action: "Write `ball_forces.centrifugal = true`.",
+    },
+    Entry {
+        name: "W07-rows-too-far-apart",
+        title: "Output interval too long for an excitation",
+        meaning: "Fewer than two rows of the table fall into a period of something that drives the scene. Means, amplitudes and spectra of \
+                  the rows are aliased.",
+        action: "Shorten `numerics.output_interval`; eight rows a period are enough.",
+    },
+    Entry {
+        name: "W08-mesh-too-coarse",
+        title: "Mesh too coarse",
+        meaning: "By the jumps of stress between elements (Zienkiewicz and Zhu) displacements or frequencies may be off by more than 2 %. \
+                  Stresses are less accurate than that.",
+        action: "Refine the mesh where stresses are high and where walls have fewer than three elements, or write `order = 2` for ten-node \
+                 elements.",
+    },
+    Entry {
+        name: "W09-four-node-locking",
+        title: "Four-node elements of a nearly incompressible material",
+        meaning: "Four-node elements lock from Poisson's ratio 0.45 on: displacements may be a fraction of the true ones, on any mesh. \
+                  A bushing in explicit steps has such elements.",
+        action: "Write `order = 2` in the mesh table; for a bushing `method = \"implicit\"`, or compare with finer cells.",
+    },
+    Entry {
+        name: "W10-stress-above-elastic",
+        title: "Stress outside the linear-elastic range",
+        meaning: "The von Mises stress exceeds 1 % of Young's modulus. No steel stays elastic there, and the linear law holds for small \
+                  strains only.",
+        action: "Check loads, units and material.",
+    },
+    Entry {
+        name: "W11-rubber-volume",
+        title: "Volume of rubber changed by more than 10 %",
+        meaning: "The law of the elastomer holds for volume changes of a few per cent.",
+        action: "Check displacements, loads and the bulk modulus.",
+    },
+    Entry {
+        name: "W12-chains-near-full-length",
+        title: "Chains of the network near their full length",
+        meaning: "Chains are stretched beyond 0.8 of their full length, where the five-term series is more than 10 % softer than the inverse \
+                  Langevin function.",
+        action: "Compare with `chain_pull = \"inverse-langevin\"`.",
+    },
+    Entry {
+        name: "W13-few-contact-nodes",
+        title: "Few bore nodes in contact",
+        meaning: "Fewer than 40 nodes of the bore are in contact with the race, so the contact stiffness depends on the mesh.",
+        action: "Refine the mesh around and along the bore until displacements and frequencies no longer change.",
+    },
+    Entry {
+        name: "W14-bushing-beyond-fit",
+        title: "Bushing displaced beyond the range of its fit",
+        meaning: "The springs of a bushing are fitted to small vibrations. At this displacement they are more than 2 % off.",
+        action: "Reduce the displacement, or solve the bushing in elements: `method = \"implicit\"`.",
+    },
+    Entry {
+        name: "W15-excitation-faster-than-fit",
+        title: "Excitation above the fitted frequencies of a bushing",
+        meaning: "Something drives the scene faster than the highest frequency to which the springs of a bushing are fitted. Above it their \
+                  stiffness no longer grows.",
+        action: "Raise `spring.NAME.bushing.fastest`.",
+    },
+    Entry {
+        name: "W16-beyond-kept-modes",
+        title: "Result beyond the kept modes",
+        meaning: "A reduced shaft or housing is used beyond what its modes represent: a frequency above the kept ones, or a load on the bore \
+                  larger than its static correction modes are made for.",
+        action: "Keep more modes (`body.NAME.beam.below`, `housing.modes_to`), or raise `housing.press`.",
+    },
+    Entry {
+        name: "W17-whirl-unstable",
+        title: "Unstable whirl",
+        meaning: "A whirling motion has negative damping at the top speed and grows, usually by internal damping above a critical speed.",
+        action: "Reduce the speed or the internal damping, or add damping that does not rotate.",
+    },
+];
