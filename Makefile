@@ -38,7 +38,7 @@ bench:
 pareto:
 	$(VERIFY) pareto --out target/pareto
 
-## Faults seeded in the physics, each to be caught by a test: report in target/mutants. JOBS=n, ONLY=id.
+## Faults seeded in the physics, each to be caught by a test or a case. JOBS=n, ONLY=id.
 JOBS ?= 1
 mutants:
 	$(VERIFY) mutants --jobs $(JOBS) $(if $(ONLY),--only $(ONLY))

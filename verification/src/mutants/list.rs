@@ -1,106 +1,97 @@
-//! The list of faults: reading it, and whether each still applies.
+//! The list of seeded faults, and where each stands in `src`.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Deserializer, de};
 
-/// The data file.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// Text of every file of `src`, by its path from the root of the repository.
+pub type Sources = BTreeMap<String, String>;
+
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct List {
-    /// Run in turn on a fault that the checks named for it let pass.
-    pub fallback: Vec<Check>,
     #[serde(rename = "mutant")]
     pub mutants: Vec<Mutant>,
 }
 
 /// One fault.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mutant {
     pub id: String,
-    /// From the repository's root.
-    pub file: String,
-    /// Text that stands in the file exactly once.
+    /// Text that occurs once in all of `src`.
     pub find: String,
     pub replace: String,
-    /// What is wrong with the physics then.
+    /// What is then wrong, in one sentence.
     pub breaks: String,
-    /// The smallest checks that notice.
+    /// The smallest checks that fail.
     pub caught_by: Vec<Check>,
 }
 
 impl Mutant {
-    /// Everything that decides what the fault is.
-    pub fn text(&self) -> String {
-        format!("{}\n{}\n{}", self.file, self.find, self.replace)
-    }
-
-    /// The file's text with the fault in it.
+    /// The file with the text to replace, and the byte at which the text begins.
     ///
     /// # Errors
-    /// When the text to replace does not stand there exactly once.
-    pub fn seeded(&self, source: &str) -> Result<String, String> {
-        match source.matches(&self.find).count() {
-            1 => Ok(source.replacen(&self.find, &self.replace, 1)),
-            count => Err(format!(
-                "mutant `{}` no longer applies: its text stands {count} times in {}",
-                self.id, self.file
-            )),
+    /// When the text does not occur exactly once.
+    pub fn place<'a>(&self, sources: &'a Sources) -> Result<(&'a str, usize), String> {
+        let found: Vec<(&str, usize)> = sources
+            .iter()
+            .flat_map(|(file, text)| text.match_indices(&self.find).map(|(at, _)| (&**file, at)))
+            .collect();
+        match found[..] {
+            [place] => Ok(place),
+            [] => Err(format!("fault `{}`: its text does not occur in src", self.id)),
+            _ => {
+                let files: Vec<&str> = found.iter().map(|(file, _)| *file).collect();
+                Err(format!("fault `{}`: its text occurs in {}", self.id, files.join(", ")))
+            }
         }
     }
 }
 
-/// What may notice a fault, written as its arguments: `--test NAME [FUNCTION]` or `--case ID`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A check, written as its arguments: `--test NAME [FUNCTION]` or `--case ID`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Check {
-    /// A file of `tests/`, by its path there without `.rs`, and which of its tests. The first folder is the
-    /// binary it belongs to.
+    /// A file of `tests/` without `.rs`, and which of its tests. The first folder is the test binary.
     Test { name: String, filter: Option<String> },
     /// A verification case.
     Case { id: String },
 }
 
 impl Check {
-    /// What is built to run it: checks of one program build nothing but what a fault changes.
-    pub fn program(&self) -> String {
+    /// Name of the test binary; `None` for a case.
+    pub fn binary(&self) -> Option<&str> {
         match self {
-            Check::Test { name, .. } => format!("--test {}", binary_of(name)),
-            Check::Case { .. } => "--case".into(),
+            Check::Test { name, .. } => name.split('/').next(),
+            Check::Case { .. } => None,
         }
     }
 
-    /// # Errors
-    /// In words, when the text is no check.
-    pub fn parse(text: &str) -> Result<Check, String> {
+    fn parse(text: &str) -> Result<Check, String> {
         let words: Vec<&str> = text.split_whitespace().collect();
-        match words.as_slice() {
-            ["--test", name, filter @ ..] if filter.len() <= 1 => Ok(Check::Test {
-                name: (*name).into(),
-                filter: filter.first().map(|f| (*f).into()),
-            }),
-            ["--case", id] => Ok(Check::Case { id: (*id).into() }),
+        match words[..] {
+            ["--test", name] => Ok(Check::Test { name: name.into(), filter: None }),
+            ["--test", name, filter] => {
+                Ok(Check::Test { name: name.into(), filter: Some(filter.into()) })
+            }
+            ["--case", id] => Ok(Check::Case { id: id.into() }),
             _ => Err(format!("`{text}` is no check: --test NAME [FUNCTION] or --case ID")),
         }
     }
 }
 
-/// The binary that a file of `tests/` belongs to.
-pub fn binary_of(name: &str) -> &str {
-    name.split('/').next().unwrap_or(name)
-}
-
 impl fmt::Display for Check {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (kind, name, filter) = match self {
-            Check::Test { name, filter } => ("--test ", name.as_str(), filter.as_ref()),
-            Check::Case { id } => ("--case ", id.as_str(), None),
-        };
-        write!(formatter, "{kind}{name}")?;
-        filter.map_or(Ok(()), |filter| write!(formatter, " {filter}"))
+        match self {
+            Check::Test { name, filter: None } => write!(formatter, "--test {name}"),
+            Check::Test { name, filter: Some(filter) } => {
+                write!(formatter, "--test {name} {filter}")
+            }
+            Check::Case { id } => write!(formatter, "--case {id}"),
+        }
     }
 }
 
@@ -111,39 +102,52 @@ impl<'de> Deserialize<'de> for Check {
 }
 
 impl List {
+    /// Reads `verification/mutants/mutants.toml` of the repository at `root`.
+    ///
     /// # Errors
-    /// In words: not readable, not of this form, ids used twice, empty fields, faults that change
-    /// nothing.
-    pub fn read(path: &Path) -> Result<List, String> {
+    /// When the file cannot be read, an id occurs twice, a field is empty, or a fault changes nothing.
+    pub fn read(root: &Path) -> Result<List, String> {
+        let path = root.join("verification/mutants/mutants.toml");
         let at = |error: &dyn fmt::Display| format!("{}: {error}", path.display());
-        let text = fs::read_to_string(path).map_err(|error| at(&error))?;
+        let text = fs::read_to_string(&path).map_err(|error| at(&error))?;
         let list: List = toml::from_str(&text).map_err(|error| at(&error))?;
         let mut ids = HashSet::new();
         for mutant in &list.mutants {
             let id = &mutant.id;
-            if !ids.insert(id) {
-                return Err(at(&format!("id `{id}` is used twice")));
-            }
-            let fields = [id, &mutant.file, &mutant.find, &mutant.breaks];
+            let fields = [id, &mutant.find, &mutant.breaks];
             if fields.iter().any(|field| field.trim().is_empty()) || mutant.caught_by.is_empty() {
-                return Err(at(&format!("mutant `{id}` has an empty field")));
+                return Err(at(&format!("fault `{id}` has an empty field")));
             }
             if mutant.find == mutant.replace {
-                return Err(at(&format!("mutant `{id}` changes nothing")));
+                return Err(at(&format!("fault `{id}` changes nothing")));
+            }
+            if !ids.insert(id) {
+                return Err(at(&format!("id `{id}` is used twice")));
             }
         }
         Ok(list)
     }
+}
 
-    /// # Errors
-    /// Names the first mutant whose text is not found exactly once below `root`.
-    pub fn check_applies(&self, root: &Path) -> Result<(), String> {
-        for mutant in &self.mutants {
-            let path = root.join(&mutant.file);
-            let source = fs::read_to_string(&path)
-                .map_err(|error| format!("mutant `{}`: {}: {error}", mutant.id, path.display()))?;
-            mutant.seeded(&source)?;
+/// Reads every Rust file of `src` below `root`.
+///
+/// # Errors
+/// When a file cannot be read.
+pub fn read_sources(root: &Path) -> Result<Sources, String> {
+    let mut sources = Sources::new();
+    let mut folders = vec![String::from("src")];
+    while let Some(folder) = folders.pop() {
+        let at = |error: &dyn fmt::Display| format!("{}: {error}", root.join(&folder).display());
+        for entry in fs::read_dir(root.join(&folder)).map_err(|error| at(&error))? {
+            let path = entry.map_err(|error| at(&error))?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let below = format!("{folder}/{name}");
+            if path.is_dir() {
+                folders.push(below);
+            } else if below.ends_with(".rs") {
+                sources.insert(below, fs::read_to_string(&path).map_err(|error| at(&error))?);
+            }
         }
-        Ok(())
     }
+    Ok(sources)
 }

@@ -1,241 +1,124 @@
-//! Mutation check: faults seeded in the physics one at a time, each of which a test must catch.
+//! Seeded faults: each changes one text of `src`, and a test or a case has to fail with it.
 //!
-//! `verification/mutants/mutants.toml` lists them. The sources are copied, so that the working
-//! tree is never touched; verdicts are kept, so that an interrupted run goes on where it was.
+//! `verification/mutants/mutants.toml` lists them. One build holds all of them behind switches, in a
+//! copy of the repository in `target/mutants`.
 
 pub mod list;
-pub mod report;
+pub mod programs;
 pub mod switch;
-pub mod workshop;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use list::{Check, List, Mutant};
-use report::{Outcome, Proof, Results, Verdict};
-use switch::Switched;
-use workshop::{Ran, Sources, Workshop};
+use programs::{Programs, Ran};
 
-/// What became of a run.
+/// Numbers of faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     pub caught: usize,
     pub survived: usize,
 }
 
-/// A check without any fault may take minutes on a slow machine.
+/// Time limit of a check without a fault.
 const LONGEST: Duration = Duration::from_secs(900);
 
-/// A fault can keep a check from ever ending: it is given up after ten times what it takes without
-/// one, and a minute, since the machine may have become busy meanwhile.
-fn patience(without_fault: f64) -> Duration {
+/// Time limit of a check with a fault, which may keep it from ending: a minute and ten times what the check
+/// takes without a fault.
+fn time_limit(without_fault: f64) -> Duration {
     Duration::from_secs_f64(60.0 + 10.0 * without_fault.max(0.0)).min(LONGEST)
 }
 
-/// A fault to judge.
-struct Task<'a> {
-    mutant: &'a Mutant,
-    /// Of what its verdict rests on.
-    key: String,
-    /// Sets it off in the one build; 0 where it has to be built alone.
-    number: usize,
-}
-
-/// What the workers share.
-struct Work<'a> {
-    tasks: VecDeque<Task<'a>>,
-    results: Results,
-    done: usize,
-    /// The first one ends the run.
-    error: Option<String>,
-}
-
-/// What stays the same for all workers.
-struct Frame<'a> {
-    list: &'a List,
-    sources: &'a Sources,
-    workshop: &'a Workshop,
-    folder: &'a Path,
-    todo: usize,
-}
-
-/// Runs the mutants of the repository at `root`, or only those named: first all that one build holds
-/// behind switches, side by side on `jobs` processors, then the others, each with a build of its own.
+/// Runs the faults of the repository at `root`, or only those named, on `jobs` processors, and prints a line
+/// for each.
 ///
 /// # Errors
-/// In words: a list that is not sound, a fault that no longer applies or does not build, a check
-/// that fails without any fault.
+/// When the list is not sound, a text does not occur exactly once, the sources do not build, or a
+/// check fails or runs no test without a fault.
 pub fn run(root: &Path, only: &[String], jobs: usize) -> Result<Tally, String> {
-    let list = List::read(&root.join("verification/mutants/mutants.toml"))?;
+    let list = List::read(root)?;
     if let Some(unknown) = only.iter().find(|id| list.mutants.iter().all(|m| m.id != **id)) {
-        return Err(format!("no mutant `{unknown}`"));
+        return Err(format!("no fault `{unknown}`"));
     }
-    if list.fallback.is_empty() {
-        return Err("the list names no fallback".into());
-    }
-    list.check_applies(root)?;
-    let selected: Vec<&Mutant> =
-        list.mutants.iter().filter(|m| only.is_empty() || only.contains(&m.id)).collect();
-    let sources = Sources::read(root)?;
-    let folder = std::path::absolute(root.join("target/mutants")).map_err(|e| e.to_string())?;
-    let mut results = Results::read(&folder);
-    results.outcomes.retain(|outcome| list.mutants.iter().any(|m| m.id == outcome.id));
-    let key = |mutant: &Mutant| sources.key(&mutant.caught_by, &mutant.text());
-    let mut tasks: Vec<Task> = selected
-        .iter()
-        .map(|mutant| Task { mutant, key: key(mutant), number: 0 })
-        .filter(|task| !results.holds(&task.mutant.id, &task.key))
+    let sources = switch::switched(&list::read_sources(root)?, &list.mutants)?;
+    let selected: Vec<(usize, &Mutant)> = (1..)
+        .zip(&list.mutants)
+        .filter(|(_, mutant)| only.is_empty() || only.contains(&mutant.id))
         .collect();
-    let todo = tasks.len();
-    let workshop = Workshop::new(&folder, jobs)?;
-    number(&workshop, &sources, &list.mutants, &mut tasks)?;
-    // Program by program: the next one is built when the verdicts of the last one are kept.
-    tasks.sort_by_key(|task| task.mutant.caught_by.first().map(Check::program));
-    let (switched, alone): (VecDeque<_>, VecDeque<_>) =
-        tasks.into_iter().partition(|task| task.number != 0);
-    let frame =
-        Frame { list: &list, sources: &sources, workshop: &workshop, folder: &folder, todo };
-    let mut work = Mutex::new(Work { tasks: switched, results, done: 0, error: None });
-    for (workers, next) in [(jobs, alone), (1, VecDeque::new())] {
-        std::thread::scope(|scope| {
-            for place in 0..workers {
-                let (frame, work) = (&frame, &work);
-                scope.spawn(move || {
-                    if let Err(error) = work_off(frame, work, place) {
-                        lock(work).error.get_or_insert(error);
-                    }
-                });
-            }
-        });
-        let shared = work.get_mut().unwrap_or_else(PoisonError::into_inner);
-        if let Some(error) = shared.error.take() {
-            return Err(error);
-        }
-        if !next.is_empty() {
-            workshop.fill(&sources)?;
-        }
-        shared.tasks = next;
-    }
-    let results = &lock(&work).results;
-    results.write(&folder, &list)?;
-    let survives = |m: &&&Mutant| results.verdict(&m.id) == Some(&Verdict::Survived);
-    let survived = selected.iter().filter(survives).count();
-    Ok(Tally { caught: selected.len() - survived, survived })
+    let checks: Vec<&Check> = selected
+        .iter()
+        .flat_map(|(_, mutant)| &mutant.caught_by)
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
+    let programs = Programs::build(root, &sources, &checks, jobs)?;
+    let proven = on_threads(jobs, &checks, |thread, check| prove(&programs, check, thread))?;
+    let seconds: BTreeMap<&Check, f64> = checks.iter().copied().zip(proven).collect();
+    let done = AtomicUsize::new(0);
+    let caught = on_threads(jobs, &selected, |thread, (number, mutant)| {
+        let by = judge(&programs, &seconds, mutant, *number, thread)?;
+        let verdict = by.as_ref().map_or("SURVIVED".into(), |by| format!("caught by {by}"));
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        eprintln!("fault {done}/{} {} … {verdict}", selected.len(), mutant.id);
+        Ok(by.is_some())
+    })?;
+    let caught = caught.into_iter().filter(|caught| *caught).count();
+    Ok(Tally { caught, survived: selected.len() - caught })
 }
 
-/// Numbers the tasks whose faults stand behind switches in the workshop's copy. A function in which the
-/// compiler takes no switch is left as it is.
-fn number(
-    workshop: &Workshop,
-    sources: &Sources,
-    mutants: &[Mutant],
-    tasks: &mut [Task],
-) -> Result<(), String> {
-    let mut barred = Vec::new();
-    loop {
-        let switched = Switched::new(sources, mutants, &barred)?;
-        for task in &mut *tasks {
-            task.number = switched.numbers.get(&task.mutant.id).copied().unwrap_or(0);
-        }
-        if tasks.iter().all(|task| task.number == 0) {
-            return workshop.fill(sources);
-        }
-        workshop.fill(&switched.sources)?;
-        let Err(messages) = workshop.compiles()? else { return Ok(()) };
-        let blamed = switched.blamed(&messages);
-        if blamed.is_empty() {
-            return Err(format!("the sources do not build:\n{}", switch::rendered(&messages)));
-        }
-        barred.extend(blamed);
+/// Seconds that a check takes without a fault. A check that fails anyway, or runs no test, catches nothing.
+fn prove(programs: &Programs, check: &Check, thread: usize) -> Result<f64, String> {
+    match programs.run(check, 0, thread, LONGEST)? {
+        (Ran::Passed { tests: 0 }, _) => Err(format!("`{check}` runs no test")),
+        (Ran::Passed { .. }, seconds) => Ok(seconds),
+        (Ran::Failed | Ran::TimedOut, _) => Err(format!("`{check}` fails without any fault")),
     }
 }
 
-fn lock<'a, 'b>(work: &'a Mutex<Work<'b>>) -> MutexGuard<'a, Work<'b>> {
-    work.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A worker's whole work: task after task, until none is left or something went wrong.
-fn work_off(frame: &Frame, work: &Mutex<Work>, place: usize) -> Result<(), String> {
-    loop {
-        let mut shared = lock(work);
-        let task = if shared.error.is_none() { shared.tasks.pop_front() } else { None };
-        drop(shared);
-        let Some(Task { mutant, key, number }) = task else { return Ok(()) };
-        prove_checks(frame, work, place, mutant)?;
-        let clock = Instant::now();
-        let fault = (number == 0).then(|| frame.workshop.seed(mutant)).transpose()?;
-        let verdict = judge(frame, work, place, mutant, number)?;
-        drop(fault);
-        let seconds = clock.elapsed().as_secs_f64();
-        let mut shared = lock(work);
-        shared.done += 1;
-        let (done, todo, id, words) = (shared.done, frame.todo, &mutant.id, verdict.words());
-        let how = if number == 0 { ", built alone" } else { "" };
-        eprintln!("mutant {done}/{todo} {id} … {words} ({seconds:.0} s{how})");
-        shared.results.keep(Outcome { id: id.clone(), key, verdict, seconds });
-        shared.results.write(frame.folder, frame.list)?;
-    }
-}
-
-/// A check that fails anyway catches nothing, and neither does one that runs no test.
-fn prove_checks(
-    frame: &Frame,
-    work: &Mutex<Work>,
-    place: usize,
-    mutant: &Mutant,
-) -> Result<(), String> {
-    for check in &mutant.caught_by {
-        let key = frame.sources.key(std::slice::from_ref(check), "");
-        if lock(work).results.proof(&key).is_some() {
-            continue;
-        }
-        eprintln!("without any fault: {check}");
-        let (ran, seconds) = frame.workshop.run(check, 0, place, LONGEST)?;
-        match ran {
-            Ran::Passed { tests: 0 } => return Err(format!("`{check}` runs no test")),
-            Ran::Passed { .. } => {
-                let mut shared = lock(work);
-                if shared.results.proof(&key).is_none() {
-                    shared.results.proven.push(Proof { key, seconds });
-                }
-            }
-            Ran::DoesNotBuild(said) => return Err(format!("the sources do not build:\n{said}")),
-            Ran::Failed | Ran::TimedOut => {
-                return Err(format!("`{check}` fails without any fault"));
-            }
-        }
-    }
-    Ok(())
-}
-
+/// The first check that fails with a fault.
 fn judge(
-    frame: &Frame,
-    work: &Mutex<Work>,
-    place: usize,
+    programs: &Programs,
+    seconds: &BTreeMap<&Check, f64>,
     mutant: &Mutant,
     number: usize,
-) -> Result<Verdict, String> {
-    let named = mutant.caught_by.iter().map(|check| (check, true));
-    let others = frame.list.fallback.iter().map(|check| (check, false));
-    for (check, expected) in named.chain(others) {
-        let by = check.to_string();
-        let key = frame.sources.key(std::slice::from_ref(check), "");
-        let proof = lock(work).results.proof(&key).map(|proof| proof.seconds);
-        let patience = proof.map_or(LONGEST, patience);
-        match frame.workshop.run(check, number, place, patience)?.0 {
+    thread: usize,
+) -> Result<Option<String>, String> {
+    for check in &mutant.caught_by {
+        match programs.run(check, number, thread, time_limit(seconds[check]))?.0 {
             Ran::Passed { .. } => {}
-            Ran::Failed if expected => return Ok(Verdict::Caught { by }),
-            Ran::TimedOut if expected => return Ok(Verdict::Caught { by: by + " (never ends)" }),
-            // That these checks pass without the fault is shown only now, as they are many.
-            Ran::Failed | Ran::TimedOut => {
-                return Ok(Verdict::CaughtElsewhere { by });
-            }
-            Ran::DoesNotBuild(said) => {
-                return Err(format!("mutant `{}` does not build:\n{said}", mutant.id));
-            }
+            Ran::Failed => return Ok(Some(check.to_string())),
+            Ran::TimedOut => return Ok(Some(format!("{check} (does not end)"))),
         }
     }
-    Ok(Verdict::Survived)
+    Ok(None)
+}
+
+/// Results of `work` for every item, in their order, on `jobs` threads. The first error ends the work.
+fn on_threads<T: Sync, R: Send>(
+    jobs: usize,
+    items: &[T],
+    work: impl Fn(usize, &T) -> Result<R, String> + Sync,
+) -> Result<Vec<R>, String> {
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new(BTreeMap::new());
+    std::thread::scope(|scope| {
+        for thread in 0..jobs {
+            let (next, results, work) = (&next, &results, &work);
+            scope.spawn(move || {
+                while let Some((index, item)) = Some(next.fetch_add(1, Ordering::Relaxed))
+                    .and_then(|i| Some((i, items.get(i)?)))
+                {
+                    let result = work(thread, item);
+                    if result.is_err() {
+                        next.store(items.len(), Ordering::Relaxed);
+                    }
+                    results.lock().unwrap_or_else(PoisonError::into_inner).insert(index, result);
+                }
+            });
+        }
+    });
+    results.into_inner().unwrap_or_else(PoisonError::into_inner).into_values().collect()
 }

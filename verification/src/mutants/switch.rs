@@ -1,19 +1,17 @@
-//! All faults in one build: each stands beside the right body of its function, behind a switch that
-//! an environment variable sets when a program starts.
+//! Sources with all faults at once: a function with faults gets one body for each of them, chosen by the
+//! environment variable `SEEDED_FAULT`.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use serde_json::Value;
 use syn::visit::{self, Visit};
 
-use super::list::Mutant;
-use super::workshop::Sources;
+use super::list::{Mutant, Sources};
 
-/// Number of the fault that a program is to have; none where it is not set.
+/// Number of the fault to run with, counted from 1 in the order of the list; 0 for none.
 pub const VARIABLE: &str = "SEEDED_FAULT";
 
-/// Ends the roots of library and command.
+/// Appended to the roots of library and command.
 const SWITCH: &str = r#"
 /// Number of the fault to run with; 0 for none.
 #[doc(hidden)]
@@ -25,128 +23,53 @@ pub fn seeded_fault() -> usize {
 }
 "#;
 
-/// Sources with switches in them.
-pub struct Switched {
-    pub sources: Sources,
-    /// By id: what sets a fault off.
-    pub numbers: BTreeMap<String, usize>,
-    places: Vec<Place>,
-}
-
-/// A function's body with all its faults.
-struct Place {
-    file: String,
-    bytes: Range<usize>,
-    ids: Vec<String>,
-}
-
-impl Switched {
-    /// Puts a switch for every fault that stands in the body of a function and is not `barred`. Other
-    /// faults have no number.
-    ///
-    /// # Errors
-    /// When a fault does not apply.
-    pub fn new(
-        sources: &Sources,
-        mutants: &[Mutant],
-        barred: &[String],
-    ) -> Result<Switched, String> {
-        let mut sources = Sources(sources.0.clone());
-        let (mut numbers, mut places) = (BTreeMap::new(), Vec::new());
-        let mut files: BTreeMap<&str, Vec<(usize, &Mutant)>> = BTreeMap::new();
-        for (index, mutant) in mutants.iter().enumerate().filter(|(_, m)| !barred.contains(&m.id)) {
-            files.entry(&mutant.file).or_default().push((index + 1, mutant));
-        }
-        for (file, faults) in files {
-            let Some(right) = sources.0.get(file).and_then(|bytes| std::str::from_utf8(bytes).ok())
-            else {
-                continue;
-            };
-            let mut text = String::new();
-            let mut copied = 0;
-            for body in bodies(right) {
-                let mut arms = String::new();
-                let mut ids = Vec::new();
-                for (number, mutant) in &faults {
-                    if let Some(wrong) = wrong_body(right, &body, mutant)? {
-                        arms += &format!("{number} => {{{wrong}}}\n");
-                        numbers.insert(mutant.id.clone(), *number);
-                        ids.push(mutant.id.clone());
-                    }
-                }
-                if ids.is_empty() {
-                    continue;
-                }
-                text += &right[copied..body.start];
-                let start = text.len();
-                text += &format!(" match crate::seeded_fault() {{\n{arms}_ => {{");
-                text += &right[body.clone()];
-                text += "}} ";
-                places.push(Place { file: file.into(), bytes: start..text.len(), ids });
-                copied = body.end;
-            }
-            text += &right[copied..];
-            sources.0.insert(file.into(), text.into_bytes());
-        }
-        for root in ["src/lib.rs", "src/main.rs"] {
-            if let Some(text) = sources.0.get_mut(root) {
-                text.extend_from_slice(SWITCH.as_bytes());
-            }
-        }
-        Ok(Switched { sources, numbers, places })
+/// The sources with a switch for each fault.
+///
+/// # Errors
+/// When the text of a fault does not occur exactly once, or not within the body of a function that
+/// can have a switch.
+pub fn switched(sources: &Sources, mutants: &[Mutant]) -> Result<Sources, String> {
+    let mut by_file: BTreeMap<&str, Vec<(usize, &Mutant, usize)>> = BTreeMap::new();
+    for (index, mutant) in mutants.iter().enumerate() {
+        let (file, at) = mutant.place(sources)?;
+        by_file.entry(file).or_default().push((index + 1, mutant, at));
     }
-
-    /// Faults of the functions that a compiler's messages (JSON, one a line) find errors in.
-    pub fn blamed(&self, messages: &str) -> Vec<String> {
-        let mut ids = Vec::new();
-        for message in errors(messages) {
-            for span in message["spans"].as_array().into_iter().flatten() {
-                let at = span["byte_start"].as_u64().unwrap_or(0) as usize;
-                let here = |place: &&Place| {
-                    span["file_name"] == place.file.as_str() && place.bytes.contains(&at)
-                };
-                ids.extend(self.places.iter().filter(here).flat_map(|place| place.ids.clone()));
-            }
+    let mut all = sources.clone();
+    for (file, faults) in by_file {
+        let right = &sources[file];
+        let bodies = bodies(right);
+        let mut arms: BTreeMap<usize, String> = BTreeMap::new();
+        for (number, mutant, at) in faults {
+            let end = at + mutant.find.len();
+            let holds = |body: &&Range<usize>| body.start <= at && end <= body.end;
+            let body = bodies.iter().find(holds).ok_or_else(|| {
+                let id = &mutant.id;
+                format!("fault `{id}`: its text is not within one function's body in {file}")
+            })?;
+            let (before, after) = (&right[body.start..at], &right[end..body.end]);
+            let arm = format!("{number} => {{{before}{}{after}}}\n", mutant.replace);
+            *arms.entry(body.start).or_default() += &arm;
         }
-        ids
+        let (mut text, mut copied) = (String::new(), 0);
+        for body in bodies.iter().filter(|body| arms.contains_key(&body.start)) {
+            text += &right[copied..body.start];
+            text += &format!(" match crate::seeded_fault() {{\n{}_ => {{", arms[&body.start]);
+            text += &right[body.clone()];
+            text += "}} ";
+            copied = body.end;
+        }
+        text += &right[copied..];
+        all.insert(file.into(), text);
     }
-}
-
-/// The compiler's messages of errors, as it would say them.
-pub fn rendered(messages: &str) -> String {
-    errors(messages).filter_map(|message| Some(message["rendered"].as_str()?.to_owned())).collect()
-}
-
-fn errors(messages: &str) -> impl Iterator<Item = Value> + '_ {
-    let read = |line: &str| serde_json::from_str::<Value>(line).ok();
-    let of = messages.lines().filter_map(read).map(|mut message| message["message"].take());
-    of.filter(|message| message["level"] == "error")
-}
-
-/// A function's body with a fault that stands in it.
-fn wrong_body(right: &str, body: &Range<usize>, mutant: &Mutant) -> Result<Option<String>, String> {
-    mutant.seeded(right)?;
-    // What a fault changes may be less than the text that shows its place.
-    let (find, replace) = (mutant.find.as_str(), mutant.replace.as_str());
-    let same = |(a, b): &(char, char)| a == b;
-    let alike = |(a, _): (char, char)| a.len_utf8();
-    let before: usize = find.chars().zip(replace.chars()).take_while(same).map(alike).sum();
-    let (find, replace) = (&find[before..], &replace[before..]);
-    let pairs = find.chars().rev().zip(replace.chars().rev());
-    let after: usize = pairs.take_while(same).map(alike).sum();
-    let start = right.find(&mutant.find).unwrap_or(0) + before;
-    let end = start + find.len() - after;
-    let replace = &replace[..replace.len() - after];
-    if start < body.start || end > body.end {
-        return Ok(None);
+    for root in ["src/lib.rs", "src/main.rs"] {
+        if let Some(text) = all.get_mut(root) {
+            *text += SWITCH;
+        }
     }
-    let wrong = format!("{}{}{}", &right[body.start..start], replace, &right[end..body.end]);
-    // What ends this function and begins another is no body.
-    Ok(syn::parse_str::<syn::Block>(&format!("{{{wrong}}}")).is_ok().then_some(wrong))
+    Ok(all)
 }
 
-/// What stands between the braces of each outermost function that can look at the switch and whose
-/// value has a type that can be named.
+/// The text between the braces of each outermost function that can have a switch.
 fn bodies(source: &str) -> Vec<Range<usize>> {
     let mut found = Bodies(Vec::new());
     if let Ok(file) = syn::parse_file(source) {
@@ -159,7 +82,8 @@ fn bodies(source: &str) -> Vec<Range<usize>> {
 struct Bodies(Vec<Range<usize>>);
 
 impl Bodies {
-    /// Whether the function may have a switch, so that one within it needs none.
+    /// Whether the function can have a switch: it is not `const`, and its type is not `impl …`, which two
+    /// bodies would make two types.
     fn take(&mut self, signature: &syn::Signature, block: &syn::Block) -> bool {
         let mut unnamed = Unnamed(false);
         unnamed.visit_return_type(&signature.output);
@@ -192,7 +116,7 @@ impl<'ast> Visit<'ast> for Bodies {
     }
 }
 
-/// Whether a type is `impl …`: two bodies would be of two types.
+/// Whether a type is `impl …`.
 struct Unnamed(bool);
 
 impl<'ast> Visit<'ast> for Unnamed {
