@@ -170,23 +170,6 @@ fn given_places_of_outer_races_count_from_their_bearing() {
     }
 }
 
-/// Of a foundation, as of a spring, an equilibrium knows the springs alone.
-#[test]
-fn statics_tells_dashpots_of_foundations() {
-    const MOVING: &str = "motion = \"5-dof\"\nfoundation = { stiffness = { x = \"1e8 N/m\", y = \"1e8 N/m\", \
-         z = \"1e8 N/m\", tilt_y = \"1e5 N m/rad\", tilt_z = \"1e5 N m/rad\" }DASHPOT }\n";
-    let with = |dashpot: &str| {
-        let ends = changed(ENDS, "x = \"-6 um\"\n", &MOVING.replace("DASHPOT", dashpot));
-        let (said, summary) = statics(&[BEARING, &ends, SHAFT].concat());
-        let remarks = summary["remarks"].to_string();
-        [said, remarks]
-    };
-    const TOLD: &str =
-        "foundation of the outer race of bearing left: its dashpots push nothing at rest";
-    assert!(with(", damping.z = \"100 N s/m\"").iter().all(|said| said.contains(TOLD)));
-    assert!(with("").iter().all(|said| !said.contains("dashpots")));
-}
-
 #[test]
 fn named_bearings_have_what_a_bearing_alone_has() {
     let (said, summary) = statics(&[BEARING, ENDS, SHAFT].concat());
@@ -274,52 +257,6 @@ fn rounding_is_no_displacement() {
         assert!(at == 0.0 || at > 1e-14, "{axis}: {at:e}");
     }
     assert!(value(&summary["bodies"]["hub"]["position"]["z"]) > 1e-7);
-}
-
-const STAY: &str = r#"
-[spring.stay]
-from = "shaft"
-from_at = "80 mm"
-stiffness = { z = "5e6 N/m" }
-"#;
-
-/// Whether `check`, `plan`, `statics` and `run` all say this, or none does.
-fn all_say(scene: &str, words: &str) -> bool {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = write(folder.path(), "scene.toml", scene);
-    let out = text(&folder.path().join("out"));
-    let said = [
-        done(&["check", &path]),
-        done(&["plan", &path]),
-        done(&["statics", &path, "--dry"]),
-        done(&["run", &path, "--out", &out]),
-    ]
-    .map(|said| said.contains(words));
-    assert!(said == [said[0]; 4], "{said:?}");
-    said[0]
-}
-
-#[test]
-fn a_spring_that_turns_with_its_body_is_told() {
-    let short = changed(RUN, "\"2 ms\"", "\"0.2 ms\"");
-    let with = |spring: &str| [BEARING, ENDS, SHAFT, spring, &short].concat();
-    let words = "spring stay turns with body.shaft";
-    assert!(all_say(&with(STAY), words));
-    assert!(all_say(&with(STAY), "from = \"ground\", to = \"shaft\""));
-    // Free to spin counts as turning; damping and turns count as stiffness does.
-    let free = changed(&with(STAY), "speed = \"1000 rpm\"", "torque = \"0 N m\"");
-    assert!(all_say(&free, words));
-    let turns = changed(STAY, "z = \"5e6 N/m\"", "turn_y = \"300 N m/rad\"");
-    assert!(all_say(&with(&turns), words));
-    // Alike along both, from the ground, or from a body that stands still: nothing to tell.
-    for fine in [
-        changed(STAY, "z = \"5e6 N/m\"", "y = \"5e6 N/m\", z = \"5e6 N/m\", x = \"1 N/m\""),
-        changed(STAY, "from = \"shaft\"", "from = \"ground\"\nto = \"shaft\""),
-    ] {
-        assert!(!all_say(&with(&fine), "turns with"), "{fine}");
-    }
-    let still = changed(&with(STAY), "speed = \"1000 rpm\"", "speed = \"0 rpm\"");
-    assert!(!all_say(&still, "turns with"));
 }
 
 /// The shipped scene of two housings, with these words changed.

@@ -85,30 +85,39 @@ fn the_table_does_not_depend_on_the_number_of_threads() {
     assert!(one == sweep(&[], "default"));
 }
 
-/// What `statics` says of a point is said of it in a sweep: each kind once, with how many points have it.
+/// A sweep has the warnings of `statics`: codes in each row, and each code once with the number of its points.
 #[test]
-fn remarks_of_points_are_counted_and_told() {
+fn warnings_on_points_are_counted() {
     let root = tempdir().unwrap();
     let path = write(root.path(), "scene.toml", DEEP_GROOVE);
     let out = root.path().join("out");
     let vary = "inner_race.z.load=-1 N, -500 N, -20 kN, -30 kN, -40 kN";
     let said = done(&["sweep", &path, "--vary", vary, "--out", &text(&out), "--threads", "1"]);
-    let counts = column(&table(&out), "remarks").to_vec();
+    let rows = column(&table(&out), "warnings").to_vec();
+    let mut points = 0;
     for (point, load) in ["-1 N", "-500 N", "-20 kN", "-30 kN", "-40 kN"].into_iter().enumerate() {
         let alone = root.path().join(format!("alone_{point}"));
         let set = format!("inner_race.z.load={load}");
         done(&["statics", &path, "--set", &set, "--out", &text(&alone)]);
-        let remarks = json(&alone.join("summary.json"))["remarks"].as_array().unwrap().len();
-        assert_eq!(counts[point], remarks as f64, "{load}");
+        let warnings = json(&alone.join("summary.json"))["warnings"].as_array().unwrap().clone();
+        let codes = warnings.iter().map(|warning| warning["code"].as_str().unwrap());
+        let mut numbers: Vec<f64> = codes.map(|code| code[1..3].parse().unwrap()).collect();
+        numbers.sort_by(f64::total_cmp);
+        points += numbers.len();
+        assert_eq!(rows[point], numbers.iter().fold(0.0, |all, one| 100.0 * all + one), "{load}");
     }
-    let kinds = json(&out.join("sweep.json"))["remarks"].as_array().unwrap().clone();
-    let pressure = kinds.iter().find(|kind| kind["remark"].as_str().unwrap().contains("4200 MPa"));
+    let all = json(&out.join("sweep.json"))["warnings"].as_array().unwrap().clone();
+    let pressure = all.iter().find(|warning| warning["code"] == "W03-pressure-above-rating");
     let pressure = pressure.expect("30 kN on this bearing dent it");
     assert_eq!((&pressure["point"], &pressure["points"]), (&json!(3), &json!(2)), "{pressure}");
     assert_eq!(pressure["at"], json!(["inner_race.z.load = -30 kN"]));
-    assert!(said.contains("4200 MPa") && said.contains("(point 3, 2 of 5 in all)"), "{said}");
-    let told: f64 = kinds.iter().map(|kind| kind["points"].as_f64().unwrap()).sum();
-    assert_eq!(told, counts.iter().sum::<f64>());
+    assert!(
+        said.contains("warning[W03-pressure-above-rating]")
+            && said.contains("(point 3, 2 of 5 in all)"),
+        "{said}"
+    );
+    let counted: u64 = all.iter().map(|warning| warning["points"].as_u64().unwrap()).sum();
+    assert_eq!(counted, points as u64);
 }
 
 /// A race beside the middle of its bearing makes an assembly of it, whose table has other columns: no row stands under another's header.
@@ -410,9 +419,9 @@ fn a_terminal_is_shown_the_progress_and_a_pipe_is_not() {
     let progress: Vec<&str> =
         shown.split('\r').filter(|line| line.contains(&format!("/{POINTS} points, "))).collect();
     assert!(progress.len() >= 3 && progress.iter().all(|line| line.contains("left")), "{shown}");
-    // A file is no terminal: nothing but the last line, and remarks.
+    // A file is no terminal: nothing but the last line, and warnings.
     let said = done(&["sweep", &path, "--vary", &vary_phase(200), "--out", &out]);
-    assert_eq!(said.lines().filter(|line| !line.starts_with("note: ")).count(), 1, "{said}");
+    assert_eq!(said.lines().filter(|line| !line.starts_with("warning[")).count(), 1, "{said}");
 }
 
 /// The record of a sweep says how it was made.

@@ -369,25 +369,3 @@ fn a_plan_foretells_the_steps_of_a_run() {
         assert!((time / (steps as f64 * size) - 1.0).abs() <= 1e-8, "{time}: {plan}");
     }
 }
-
-/// Loads that are zero where an equilibrium looks, and what spins, are left out with a word.
-#[test]
-fn what_an_equilibrium_leaves_out_is_told() {
-    let cantilever = shipped("cantilever.toml");
-    let text = std::fs::read_to_string(&cantilever).unwrap();
-    let place = Place::new();
-    let ramp = "{ ramp = [\"0 N\", \"-100 N\"], start = \"0 s\", duration = \"1 ms\" }";
-    let ramped = text.replace("z = \"-100 N\"", &format!("z = {ramp}"));
-    assert_ne!(ramped, text);
-    let said = |text: &str, command_name: &str, further: &[&str]| {
-        succeed(command(command_name, &place.scene("scene.toml", text), further))
-    };
-    let zero = "all loads and displacements are zero at t = 0";
-    assert!(said(&ramped, "statics", &["--dry"]).contains(zero));
-    assert!(!said(&text, "statics", &["--dry"]).contains(zero));
-    for name in ["statics", "modes"] {
-        let spun = said(&text, name, &["--dry", "--set", "solid.spin=1000 rpm"]);
-        assert!(spun.contains("solid.spin is of the start of a run and left out here"), "{spun}");
-        assert!(!said(&text, name, &["--dry"]).contains("of the start of a run"));
-    }
-}

@@ -433,19 +433,6 @@ fn long_meshes_are_read() {
     assert!(said.contains("elements of 4"), "{said}");
 }
 
-/// A body that nothing holds may fly farther than it is long.
-#[test]
-fn flight_is_no_displacement_to_be_told_of() {
-    let place = Place::new();
-    let text = bar(1, "[numerics]\nend = \"0.1 ms\"\n");
-    let text = format!("[solid]\nvelocity = [\"1000 m/s\", \"0 m/s\", \"0 m/s\"]\n{text}");
-    let out = place.path("out");
-    let scene = place.scene("flight.toml", &text);
-    succeed(solid_command_common::into_folder("run", &scene, &out, &[]));
-    let summary = solid_command_common::json(out.join("summary.json"));
-    assert!(!summary["remarks"].to_string().contains("body's size"), "{}", summary["remarks"]);
-}
-
 /// Two rows, at the start and at the end.
 #[test]
 fn an_interval_may_be_as_long_as_the_run() {

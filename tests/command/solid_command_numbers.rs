@@ -331,88 +331,77 @@ fn bent(cells: [u8; 3], order: u8, poisson: &str, force: &str) -> String {
     )
 }
 
-/// What `statics` says in notes, and what its summary keeps of them.
-fn remarks(place: &Place, scene: &str) -> Vec<String> {
+/// Warnings of `statics`, as its summary has them and it prints them.
+fn warnings(place: &Place, scene: &str) -> Vec<(String, String)> {
     let path = place.scene("bent.toml", scene);
     let out = place.path("bent");
     let said = succeed(into_folder("statics", &path, &out, &[]));
-    let kept = json(out.join("summary.json"))["remarks"].clone();
-    let kept: Vec<String> = serde_json::from_value(kept).unwrap();
-    for remark in &kept {
-        assert!(said.contains(&format!("note: {remark}")), "{remark} is not in {said}");
+    let all = json(out.join("summary.json"))["warnings"].as_array().unwrap().clone();
+    let of = |warning: &Value, key: &str| warning[key].as_str().unwrap().to_string();
+    let all: Vec<_> = all.iter().map(|one| (of(one, "code"), of(one, "text"))).collect();
+    for (code, text) in &all {
+        assert!(said.contains(&format!("warning[{code}]: {text}\n")), "{text} is not in {said}");
     }
-    assert_eq!(said.matches("note: ").count(), kept.len(), "{said}");
-    kept
+    assert_eq!(said.matches("warning[").count(), all.len(), "{said}");
+    all
 }
 
-/// "expected to be 4.4 to 15 % too".
-fn told(remark: &str) -> [f64; 2] {
-    let numbers = remark.split_once("expected to be ").unwrap().1.split_once(" % too").unwrap().0;
-    let (low, high) = numbers.split_once(" to ").unwrap();
-    [low, high].map(|number| number.parse().unwrap())
+const COARSE: &str = "W08-mesh-too-coarse";
+const LOCKS: &str = "W09-four-node-locking";
+
+/// Per cent, the only one with this code.
+fn percent(found: &[(String, String)]) -> f64 {
+    assert!(found.len() == 1 && found[0].0 == COARSE, "{found:?}");
+    up_to(&found[0].1)
+}
+
+/// "may be up to 15 % too".
+fn up_to(text: &str) -> f64 {
+    text.split_once("may be up to ").unwrap().1.split_once(" % too").unwrap().0.parse().unwrap()
 }
 
 #[test]
-fn meshes_that_lock_are_told_and_fine_ones_are_not() {
+fn meshes_that_lock_or_are_too_coarse_are_warned_of() {
     let place = Place::new();
-    for (poisson, word) in
-        [("0.3", "over few of them"), ("0.4999", "lock at Poisson's ratio 0.4999")]
-    {
-        let found = remarks(&place, &bent([10, 2, 2], 1, poisson, "-100 N"));
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].contains(word) && found[0].contains("order = 2"), "{found:?}");
-        let found = remarks(&place, &bent([24, 4, 4], 2, poisson, "-100 N"));
+    for (poisson, code) in [("0.3", COARSE), ("0.4999", LOCKS)] {
+        let found = warnings(&place, &bent([10, 2, 2], 1, poisson, "-100 N"));
+        assert!(found.len() == 1 && found[0].0 == code, "{found:?}");
+        let found = warnings(&place, &bent([24, 4, 4], 2, poisson, "-100 N"));
         if poisson == "0.3" {
             assert!(found.is_empty(), "{found:?}");
-            continue;
+        } else {
+            // 2 % are missing there.
+            assert!((2.0..4.0).contains(&percent(&found)), "{found:?}");
         }
-        // 2 % are missing there, as the jumps and their band say.
-        let word =
-            "at Poisson's ratio 0.4999 ten-node elements lock too, if less than four-node ones";
-        assert!(found.len() == 1 && found[0].contains(word), "{found:?}");
-        let [low, high] = told(&found[0]);
-        assert!((0.5..2.0).contains(&low) && (2.0..4.0).contains(&high), "{found:?}");
     }
-    // One element each way: 13.6 % are missing, and jumps tell 2.2 %.
-    let cube = bent([1, 1, 1], 2, "0.3", "-10 N").replace("100 mm", "10 mm");
-    let found = remarks(&place, &cube);
-    let words = ["expected to be 2.2 to 15 % too small", "say 2.2 %", "1 to 7 times"];
-    let wall = "the thinnest walls have 1 element through them (10 mm (at x ";
-    for word in words.into_iter().chain([wall]) {
-        assert!(found.len() == 1 && found[0].contains(word), "{word}: {found:?}");
-    }
-    // As many elements through the width as through the height: the thinnest wall is that of the height.
-    let flat =
-        bent([10, 1, 1], 2, "0.3", "-0.01 N").replace("height = \"10 mm\"", "height = \"4 mm\"");
-    let found = remarks(&place, &flat);
-    let wall = "have 1 element through them (4 mm (at x ";
-    assert!(found.len() == 1 && found[0].contains(wall), "{found:?}");
-    // What was silent with the old limit: 3.9 % and 2.7 % are missing.
-    let cube = bent([2, 2, 2], 2, "0.3", "-10 N").replace("100 mm", "10 mm");
-    let slender =
+    // One element each way, two, and one through a thin bar: 13.6, 3.9 and 2.7 % are missing.
+    let cube = |count: usize| bent([count; 3], 2, "0.3", "-10 N").replace("100 mm", "10 mm");
+    let thin =
         bent([10, 1, 1], 2, "0.3", "-0.01 N").replace("height = \"10 mm\"", "height = \"2 mm\"");
-    for (scene, missing, through) in [(cube, 3.9, "2 elements"), (slender, 2.7, "1 element")] {
-        let found = remarks(&place, &scene);
-        let [low, high] = told(&found[0]);
-        assert!(low <= missing && missing <= high, "{found:?}");
-        assert!(found[0].contains(&format!("have {through} through them")), "{found:?}");
+    for (scene, missing, wall) in [
+        (cube(1), 13.6, "have 1 element through 10 mm (at x "),
+        (cube(2), 3.9, "have 2 elements through 10 mm (at x "),
+        (thin, 2.7, "have 1 element through 2 mm (at x "),
+    ] {
+        let found = warnings(&place, &scene);
+        let most = percent(&found);
+        assert!(missing <= most && most <= 5.0 * missing, "{found:?}");
+        assert!(found[0].1.contains(wall), "{wall}: {found:?}");
     }
     // A stiff bar has a high lowest frequency.
     let modes = |cells, order| {
         let scene = bent(cells, order, "0.3", "-100 N");
         succeed(command("modes", &place.scene("modes.toml", &scene), &["--dry"]))
     };
-    let coarse = modes([10, 2, 2], 1);
-    assert!(coarse.contains("note: the mesh is too coarse: the lowest frequency"), "{coarse}");
-    assert!(!modes([24, 4, 4], 2).contains("note: "));
+    assert!(modes([10, 2, 2], 1).contains(COARSE));
+    assert!(!modes([24, 4, 4], 2).contains("warning["));
     // Of a free ring with one element through its wall: finer meshes settle at 764.05 Hz.
     let ring = std::fs::read_to_string(shipped("ring_modes.toml")).unwrap();
     let coarse = ring.replace("around = 48", "around = 24");
     let out = place.path("ring");
     let said = succeed(into_folder("modes", &place.scene("ring.toml", &coarse), &out, &[]));
     let missing = 100.0 * (column(&out, "frequency")[6] / 764.05 - 1.0);
-    let [low, high] = told(&said);
-    assert!(low <= missing && missing <= high, "{missing}: {said}");
+    assert!(missing <= up_to(&said), "{missing}: {said}");
     // Without supports the first six are no vibrations.
     let free = bent([10, 2, 2], 2, "0.3", "-100 N");
     let free = free.split_once("[[solid.held]]").unwrap().0.to_string() + "[modes]\ncount = 8\n";
@@ -429,16 +418,12 @@ fn meshes_that_lock_are_told_and_fine_ones_are_not() {
 }
 
 #[test]
-fn strains_and_displacements_beyond_a_linear_law_are_told() {
+fn stresses_beyond_a_linear_law_are_warned_of() {
+    const STRAINED: &str = "W10-stress-above-elastic";
     let place = Place::new();
-    let found = remarks(&place, &bent([24, 2, 2], 2, "0.3", "-150 kN"));
-    let strained = found.iter().find(|remark| remark.contains("of Young's modulus"));
-    assert!(strained.is_some_and(|remark| remark.contains("at x ")), "{found:?}");
-    // Soft, so that it goes far without stress beyond its modulus: a rope of a bar.
-    let soft = bent([24, 1, 1], 2, "0.3", "-100 N").replace("210 GPa", "0.01 GPa");
-    let soft = soft.replace("z = \"-100 N\"", "x = \"4500 N\"");
-    let found = remarks(&place, &soft);
-    assert!(found.iter().any(|remark| remark.contains("more than the body's size")), "{found:?}");
+    let found = warnings(&place, &bent([24, 2, 2], 2, "0.3", "-150 kN"));
+    let strained = found.iter().find(|(code, _)| code == STRAINED);
+    assert!(strained.is_some_and(|(_, text)| text.contains("at x ")), "{found:?}");
     // A run is judged by all its rows: this blow is over long before its end.
     let run = bent([10, 1, 1], 1, "0.3", "-100 N")
         .replace("z = \"-100 N\"", "x = { half_sine = \"700 kN\", duration = \"10 us\" }");
@@ -446,9 +431,8 @@ fn strains_and_displacements_beyond_a_linear_law_are_told() {
     let text = format!("{damped}[numerics]\nend = \"60 us\"\noutput_interval = \"1 us\"\n");
     let out = place.path("blow");
     let said = succeed(into_folder("run", &place.scene("blow.toml", &text), &out, &[]));
-    assert!(said.contains("of Young's modulus") && said.contains(" at t = "), "{said}");
-    let kept = json(out.join("summary.json"))["remarks"].to_string();
-    assert!(kept.contains("of Young's modulus"), "{kept}");
+    assert!(said.contains(STRAINED) && said.contains(" at t = "), "{said}");
+    assert_eq!(json(out.join("summary.json"))["warnings"][0]["code"], STRAINED);
     let gentle = text.replace("700 kN", "7 kN");
     let said = succeed(into_folder(
         "run",
@@ -456,5 +440,5 @@ fn strains_and_displacements_beyond_a_linear_law_are_told() {
         &place.path("gentle"),
         &[],
     ));
-    assert!(!said.contains("note: "), "{said}");
+    assert!(!said.contains("warning["), "{said}");
 }
