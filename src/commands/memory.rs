@@ -1,19 +1,16 @@
-//! How much memory a command may take, and what is said of it before and while it works.
+//! How much memory a command may take, and a sign of life while it works.
 
-use super::say;
-use bearing_dynamics::output::amounts::{duration, size};
-use bearing_dynamics::solver::solid::tangent::Unknowns;
-use bearing_dynamics::solver::sparse::{Cost, Progress, Speed, TooLarge};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::error::Error;
+use bearing_dynamics::output::amounts::size;
+use bearing_dynamics::solver::sparse::{Memory, TooLarge};
+use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Solutions that take longer than so many seconds are announced.
+/// Work that takes longer than so many seconds is announced.
 const WORTH_A_WORD: f64 = 5.0;
-/// How often a progress bar looks.
+/// How often a spinner turns.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// Bytes given with `--memory`.
@@ -67,67 +64,33 @@ fn limit(held: f64) -> (f64, &'static str) {
     }
 }
 
-/// Refuses what does not fit; `other` names another way out, with a leading comma.
-pub fn refuse_beyond(cost: &Cost, other: &'static str) -> Result<(), TooLarge> {
+/// Refuses what does not fit; `other` names another method, with a leading comma.
+pub fn refuse_beyond(memory: &Memory, other: &'static str) -> Result<(), TooLarge> {
     let held = held();
     let (limit, from) = limit(held);
-    cost.refuse_beyond(held, limit, from, other)
+    memory.refuse_beyond(held, limit, from, other)
 }
 
-/// What a solution takes, in words: memory, and processor time as fast as the machine is now.
-pub fn text(cost: &Cost) -> String {
+/// Memory that a solution needs, in words.
+pub fn text(memory: &Memory) -> String {
     let held = held();
     let (limit, _) = limit(held);
-    let bytes = held + cost.bytes();
+    let bytes = held + memory.bytes();
     let too_large = match bytes <= limit {
         true => String::new(),
         false => format!("; REFUSED: only {} may be taken", size(limit)),
     };
-    let speed = Speed::measured();
-    let (seconds, further) = (cost.seconds(&speed), cost.seconds_of_factors(&speed));
-    // Loads that bend a body visibly change its stiffness.
-    let repeated = match cost.task.repeats && seconds >= 1.0 {
-        true => format!(" with one factorisation, {} more for each further one", duration(further)),
-        false => String::new(),
-    };
-    format!(
-        "{} unknowns, {} values in the factors; {} of memory in all, about {} of processor time here{repeated}{too_large}",
-        cost.unknowns,
-        cost.fill,
-        size(bytes),
-        duration(seconds)
-    )
+    format!("about {} of memory, {} unknowns{too_large}", size(bytes), memory.unknowns)
 }
 
-/// Refuses or announces a long piece of work; whether it is long.
-pub fn announced(cost: &Cost, other: &'static str) -> Result<bool, Box<dyn Error>> {
-    refuse_beyond(cost, other)?;
-    // As fast as any machine is: no need to measure for what is quick on all.
-    let quick = Speed { operations: 1e10, bytes: 5e9 };
-    let is_long = cost.seconds(&quick) >= WORTH_A_WORD;
-    if is_long {
-        say(&format!("{}: {}\n", cost.task.name, text(cost)))?;
-    }
-    Ok(is_long)
-}
-
-/// Refuses, announces and does a long piece of work, with a bar on a terminal.
-pub fn watched<T>(
-    cost: &Cost,
-    unknowns: &Unknowns,
+/// Refuses what does not fit, and does the rest.
+pub fn within<T>(
+    memory: &Memory,
     other: &'static str,
     work: impl FnOnce() -> T,
-) -> Result<T, Box<dyn Error>> {
-    if !announced(cost, other)? || !std::io::stderr().is_terminal() {
-        return Ok(work());
-    }
-    let (done, progress) = (AtomicBool::new(false), unknowns.progress.clone());
-    Ok(std::thread::scope(|scope| {
-        scope.spawn(|| draw(cost, &progress, &done));
-        // Also where the work panics: the scope waits for the thread.
-        let _told = Told(&done);
-        work()
-    }))
+) -> Result<T, TooLarge> {
+    refuse_beyond(memory, other)?;
+    Ok(spun(memory.task.name.into(), work))
 }
 
 /// Does work that says nothing of how far it is; a terminal is told that it is on, and for how long, a log once it takes long.
@@ -166,31 +129,4 @@ fn told_once<T>(what: &str, work: impl FnOnce() -> T) -> T {
         waiting.thread().unpark();
         found
     })
-}
-
-struct Told<'a>(&'a AtomicBool);
-
-impl Drop for Told<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
-fn draw(cost: &Cost, progress: &Progress, done: &AtomicBool) {
-    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:30} {percent} % {msg}") {
-        bar.set_style(style);
-    }
-    while !done.load(Ordering::Relaxed) {
-        let (begun, finished) = progress.factorisations();
-        let part = progress.operations() as f64 / cost.operations;
-        bar.set_position((1000.0 * part.min(1.0)) as u64);
-        bar.set_message(match (begun, progress.solves()) {
-            (0, _) => "assembling the stiffness".to_string(),
-            (_, _) if begun > finished => format!("of factorisation {begun}"),
-            (_, solves) => format!("factorised; {solves} right-hand sides solved"),
-        });
-        std::thread::sleep(LOOK);
-    }
-    bar.finish_and_clear();
 }

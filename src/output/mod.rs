@@ -12,7 +12,7 @@
 //! - [`journal`]: how the file of a state is read and written
 //! - [`mod@spectrum`]: amplitude spectra of time series
 //! - [`compare`]: where does a candidate depart from a reference, and by how much
-//! - [`visible`]: texts of files made fit for a terminal; [`amounts`]: memory and time as people say them
+//! - [`visible`]: texts of files made fit for a terminal; [`amounts`]: memory as people write it
 //! - [`pack`]: a scene with its expected results, tolerances and hashes
 //!
 //! # The folder of a run

@@ -226,6 +226,32 @@ fn of_modes() {
     assert_raised("W17", "modes", &on("from = \"disc\""), &on("from = \"ground\"\nto = \"disc\""));
 }
 
+/// `docs/warnings.md` is made of the table; WARNINGS=write writes it.
+#[test]
+fn the_page_of_warnings_is_that_of_the_table() {
+    let mut page = String::from(
+        "# Warnings\n\nMade by `WARNINGS=write cargo test --test command warnings`; do not edit by hand.\n\n\
+         A warning is printed as `warning[CODE]: text`. `summary.json` has a list `warnings` of `{\"code\", \"text\"}`, `sweep.json` each code once \
+         with its first point and the number of points. The column `warnings` of `sweep.csv` holds the numbers of the codes, two digits each: 305 \
+         is W03 and W05. Scripts should look at the code; texts may change.\n",
+    );
+    for entry in &TABLE {
+        page += &format!(
+            "\n## {}\n\n**{}.** {}\n\n**What to do.** {}\n",
+            entry.name, entry.title, entry.meaning, entry.action
+        );
+    }
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/warnings.md");
+    if std::env::var_os("WARNINGS").is_some_and(|mode| mode == "write") {
+        std::fs::write(path, &page).expect("docs/warnings.md can be written");
+    }
+    let committed = read(Path::new(path));
+    assert!(
+        committed == page,
+        "docs/warnings.md is out of date: run WARNINGS=write cargo test --test command warnings"
+    );
+}
+
 /// Numbers in codes count up, so that a column of a sweep can hold them.
 #[test]
 fn codes_are_numbered_and_explained() {

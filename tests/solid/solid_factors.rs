@@ -1,4 +1,4 @@
-//! Order of elimination, structure of the factors and what is foretold of them.
+//! Order of elimination, structure of the factors and the memory that they need.
 
 use crate::solid_common;
 
@@ -6,7 +6,7 @@ use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::Order;
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory;
 use bearing_dynamics::solver::solid::model::{Load, Prescribed, SolidModel};
 use bearing_dynamics::solver::solid::tangent::{
     PRESCRIBED, Unknowns, mass_pattern, pattern, stiffness,
@@ -15,7 +15,7 @@ use bearing_dynamics::solver::sparse::dissection::nested_dissection;
 use bearing_dynamics::solver::sparse::graph::Graph;
 use bearing_dynamics::solver::sparse::separator::{Side, smallest_cuts};
 use bearing_dynamics::solver::sparse::{
-    Cost, Entry, FactorError, Ordering, Speed, SymmetricMatrix, Task,
+    Entry, FactorError, Memory, Ordering, SymmetricMatrix, Task,
 };
 use solid_common::{cut_cubes, solid};
 use std::collections::BTreeSet;
@@ -79,7 +79,7 @@ fn unknowns_are_numbered_once_each() {
 }
 
 #[test]
-fn the_foretold_structure_is_that_of_elimination() {
+fn the_structure_is_that_of_elimination() {
     for (cells, order) in [([3, 2, 2], Order::Linear), ([5, 4, 4], Order::Quadratic)] {
         let model = block(cells, order);
         for ordering in [Ordering::MinimumDegree, Ordering::NestedDissection] {
@@ -110,11 +110,8 @@ fn the_foretold_structure_is_that_of_elimination() {
             assert!(fill >= nonzeros && fill as f64 <= most * nonzeros as f64, "{fill} {nonzeros}");
             let stored: usize = elimination.panels.iter().map(|p| p.height() * p.columns).sum();
             let factor = unknowns.factor(&matrix).unwrap();
-            let foretold = foretold::statics(&model, &unknowns).fill;
-            assert_eq!([foretold, factor.fill()], [stored, stored]);
-            let done = unknowns.progress.operations() as f64;
-            // Whole numbers are counted panel by panel.
-            assert!((done / elimination.operations - 1.0).abs() <= 1e-9, "{done}");
+            let estimated = memory::statics(&unknowns).fill;
+            assert_eq!([estimated, factor.fill()], [stored, stored]);
         }
     }
 }
@@ -174,17 +171,12 @@ fn dissection_beats_minimum_degree() {
     assert_eq!(cheapest.operations, dissection.operations);
 }
 
-/// Foretelling reads the structure alone.
 #[test]
-fn foretelling_factorises_nothing() {
+fn what_does_not_fit_into_memory_is_refused() {
     let model = block([4, 3, 2], Order::Quadratic);
     let unknowns = Unknowns::new(&model);
-    let statics = foretold::statics(&model, &unknowns);
-    let modes = foretold::modes(&model, &unknowns, 6);
-    assert!(modes.bytes() > statics.bytes());
-    assert_eq!(unknowns.progress.factorisations(), (0, 0));
-    let _ = unknowns.factor(&stiffness_of(&model, &unknowns)).unwrap();
-    assert_eq!(unknowns.progress.factorisations(), (1, 1));
+    let statics = memory::statics(&unknowns);
+    assert!(memory::modes(&unknowns, 6).bytes() > statics.bytes());
     let held = 1e6;
     let enough = held + statics.bytes();
     assert_eq!(statics.refuse_beyond(held, enough, "test", ""), Ok(()));
@@ -272,14 +264,14 @@ fn dissection_orders_every_node_once() {
 
 /// A stored value of a sparse matrix has eight bytes, and four for its row.
 #[test]
-fn sparse_matrices_are_foretold_with_their_rows() {
+fn memory_of_sparse_matrices_counts_their_rows() {
     let model = block([4, 3, 2], Order::Quadratic);
     let unknowns = Unknowns::new(&model);
-    let cost = foretold::statics(&model, &unknowns);
-    let without = Task { matrix: 0, ..cost.task };
-    let left = Cost::new(&unknowns.elimination, without).other_bytes;
-    assert_eq!(cost.task.matrix, stiffness_of(&model, &unknowns).stored());
-    assert_eq!(cost.other_bytes - left, 12.0 * cost.task.matrix as f64);
+    let needed = memory::statics(&unknowns);
+    let without = Task { matrix: 0, ..needed.task };
+    let left = Memory::new(&unknowns.elimination, without).other_bytes;
+    assert_eq!(needed.task.matrix, stiffness_of(&model, &unknowns).stored());
+    assert_eq!(needed.other_bytes - left, 12.0 * needed.task.matrix as f64);
 }
 
 /// A matrix that is not positive is refused at the unknown where it shows, wherever that is eliminated.
@@ -295,20 +287,4 @@ fn a_pivot_that_is_not_positive_is_named() {
         let refused = unknowns.factor(&matrix).err();
         assert_eq!(refused, Some(FactorError::NotPositiveDefinite { pivot: bad }));
     }
-}
-
-/// A solution goes through the factors twice, forwards and back: it takes no less than to read so much, and no more than
-/// some times that.
-#[test]
-fn a_solution_reads_its_factors_twice() {
-    let model = block([4, 3, 2], Order::Quadratic);
-    let unknowns = Unknowns::new(&model);
-    let task = foretold::statics(&model, &unknowns).task;
-    // Products cost nothing.
-    let speed = Speed { operations: f64::INFINITY, bytes: 1e9 };
-    let seconds =
-        |passes: usize| Cost::new(&unknowns.elimination, Task { passes, ..task }).seconds(&speed);
-    let twice = 2.0 * 8.0 * unknowns.elimination.fill as f64 / speed.bytes;
-    let ratio = (seconds(3) - seconds(2)) / twice;
-    assert!((1.0..=4.0).contains(&ratio), "{ratio}");
 }

@@ -1,7 +1,7 @@
 //! One flexible housing and the bearing in it: mesh, bore, seat, and what a person should know of them.
 
 use super::Fallible;
-use crate::commands::memory::watched;
+use crate::commands::memory::within;
 use crate::commands::placed;
 use crate::commands::solid::mesh_notes;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
@@ -18,7 +18,7 @@ use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
 use bearing_dynamics::solver::clock::{rounded, to_digits};
 use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
 use bearing_dynamics::solver::housing::condensed::{
-    CondensedBore, Sizes, condense_over, cost, sizes,
+    CondensedBore, Sizes, condense_over, memory, sizes,
 };
 use bearing_dynamics::solver::housing::course::CourseSeat;
 use bearing_dynamics::solver::housing::seat::Seat;
@@ -28,7 +28,7 @@ use bearing_dynamics::solver::plan::solid::{self, Method};
 use bearing_dynamics::solver::profile::Profile;
 use bearing_dynamics::solver::solid::support::free_motions;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
-use bearing_dynamics::solver::sparse::Cost;
+use bearing_dynamics::solver::sparse::Memory;
 use std::time::Instant;
 
 /// Part of the race's radius beyond which nodes of the bore count as out of reach until something
@@ -115,24 +115,23 @@ impl Housing {
         .into())
     }
 
-    /// What condensing it onto the nodes of its bore takes, from its structure alone.
-    pub fn condensing(&self) -> Fallible<(Unknowns, Sizes, Cost)> {
+    /// Sizes and memory of condensing it onto the nodes of its bore, from its structure alone.
+    pub fn condensing(&self) -> Fallible<(Unknowns, Sizes, Memory)> {
         self.refuse_free()?;
         let setup = &self.setup;
         let unknowns = Unknowns::new(&setup.model);
         let sizes = sizes(&setup.model, &unknowns, &setup.nodes, &setup.reach())?;
-        let cost = cost(&setup.model, &unknowns, &sizes);
-        Ok((unknowns, sizes, cost))
+        let needed = memory(&unknowns, &sizes);
+        Ok((unknowns, sizes, needed))
     }
 
     /// Condensed onto the nodes of its bore under the race.
     pub fn condensed(&self) -> Fallible<CondensedBore> {
         let setup = &self.setup;
-        let (unknowns, _, cost) = self.condensing()?;
-        let condense =
-            || condense_over(&setup.model, unknowns.clone(), &setup.nodes, &setup.reach());
+        let (unknowns, _, needed) = self.condensing()?;
+        let condense = || condense_over(&setup.model, unknowns, &setup.nodes, &setup.reach());
         let named = |error: &dyn std::fmt::Display| format!("{}{error}", self.before());
-        let condensed = watched(&cost, &unknowns, INSTEAD, condense).map_err(|e| named(&e))?;
+        let condensed = within(&needed, INSTEAD, condense).map_err(|e| named(&e))?;
         Ok(condensed.map_err(|error| named(&error))?)
     }
 

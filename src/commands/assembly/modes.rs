@@ -26,7 +26,7 @@ use bearing_dynamics::solver::housing::held_motions::{
 };
 use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody};
 use bearing_dynamics::solver::rotor::model::RotorError;
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory::modes_of_fixed;
 use bearing_dynamics::solver::solid::modes::Mode as NaturalShape;
 use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
 use bearing_dynamics::solver::statics::{AssemblySolution, Determinacy};
@@ -141,7 +141,7 @@ pub(super) fn natural_shapes(
         None => Natural::Lowest(usual),
     };
     let model = &housing.setup.model;
-    refuse_beyond(&foretold::modes_of_held(model, bore.unknowns(), usual + 1), "")?;
+    refuse_beyond(&modes_of_fixed(bore.unknowns(), usual + 1), "")?;
     let what = format!("{}natural shapes of the housing", housing.before());
     Ok(spun(what, || natural_shapes_of(model, bore, natural))?)
 }

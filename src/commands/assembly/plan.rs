@@ -289,13 +289,13 @@ fn condensing_notes(lists: &Lists, housings: &[Housing]) -> Vec<String> {
     let mut planned = Vec::new();
     for housing in housings {
         let of = housing.before();
-        let foretold = housing.constant().and_then(|()| housing.condensing());
-        let (sizes, cost) = match foretold {
-            Ok((_, sizes, cost)) => (sizes, cost),
+        let condensing = housing.constant().and_then(|()| housing.condensing());
+        let (sizes, needed) = match condensing {
+            Ok((_, sizes, needed)) => (sizes, needed),
             Err(error) => return vec![note(name, &format!("not possible: {error}"))],
         };
         planned.push(note("condensed bore", &format!("{of}{}", condensed_text(&sizes))));
-        planned.push(note("condensing takes", &format!("{of}{}", memory::text(&cost))));
+        planned.push(note("memory of condensing", &format!("{of}{}", memory::text(&needed))));
     }
     planned
 }
@@ -308,7 +308,7 @@ fn condensed_text(sizes: &Sizes) -> String {
     )
 }
 
-/// Windows of the explicit way, and about how long they take here.
+/// Windows of the explicit method.
 fn explicit_note(lists: &Lists, housings: &[Housing], run: &RunSettings) -> String {
     let chosen = lists.scene.housing_method() == Some(HousingMethod::Explicit);
     // Where it starts does not matter here, and finding out takes long.

@@ -24,7 +24,7 @@ use bearing_dynamics::solver::housing::reduced_start::{
     self, add_housing, ball_frequency, put_in_equilibrium,
 };
 use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory;
 use std::error::Error;
 use std::time::Instant;
 
@@ -47,8 +47,8 @@ const BEYOND: f64 = 1.25;
 /// Frequencies of the housing that are kept, over that of a ball between its races.
 const BEYOND_BALLS: f64 = 2.0;
 
-/// Natural shapes whose memory is foretold: a block of steel has some dozens up to the frequency of a ball.
-const FORETOLD: usize = 40;
+/// Modes whose memory is counted: a block of steel has some dozens up to the frequency of a ball.
+const COUNTED: usize = 40;
 
 /// Reduces a housing for a bearing whose balls are under `struck` (N).
 fn reduction(
@@ -69,8 +69,8 @@ fn reduction(
         to_digits(modes_to, 4)
     );
     // Their number is not known before.
-    let cost = foretold::modes_of_held(&housing.setup.model, bore.unknowns(), FORETOLD);
-    refuse_beyond(&cost, ", a quasi-static housing (method = \"quasi-static\" in [housing])")?;
+    let needed = memory::modes_of_fixed(bore.unknowns(), COUNTED);
+    refuse_beyond(&needed, ", a quasi-static housing (method = \"quasi-static\" in [housing])")?;
     let work = || reduce(&housing.setup.model, bore, settings.penalty, &loads, &options);
     Ok(spun(what, work)?)
 }

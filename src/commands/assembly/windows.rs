@@ -9,31 +9,26 @@ use bearing_dynamics::solver::housing::bonded::BondedBushing;
 use bearing_dynamics::solver::housing::exchange::Exchange;
 use bearing_dynamics::solver::housing::stepped::SteppedSolid;
 use std::error::Error;
-use std::time::{Duration, Instant};
 
-/// How long windows are timed for an estimate of the wall time.
-const TIMED: Duration = Duration::from_millis(300);
-
-/// Windows of explicit steps from here, and about how long they take.
+/// Windows of explicit steps from the start.
 pub fn windows_text(
     scene: &AssemblyScene,
     parts: HousedParts,
     run: &RunSettings,
 ) -> Result<String, Box<dyn Error>> {
-    let (mut housed, windows) = parts.started(run.output_interval)?;
+    let (housed, windows) = parts.started(run.output_interval)?;
     let all = whole_number(run.end, run.output_interval) * windows;
     let mut nodes = String::new();
     for seat in housed.seats() {
         let (tested, out_of_reach) = seat.counts();
         let of = seat.seat.suffix();
         nodes +=
-            &format!("at the start {tested} bore nodes{of} tested, {out_of_reach} out of reach");
+            &format!("; at the start {tested} bore nodes{of} tested, {out_of_reach} out of reach");
         if out_of_reach > 0 {
             let moved = to_digits(0.5e6 * seat.seat.reach, 3);
             nodes +=
                 &format!(", sorted anew each time that race and bore have moved by {moved} um");
         }
-        nodes += "; ";
     }
     let steps = |part: &SteppedSolid| {
         let of = part.name.as_ref().map_or(String::new(), |name| format!(" {name}"));
@@ -47,23 +42,12 @@ pub fn windows_text(
         |of: &BondedBushing| format!("{} of the bushing {}", steps_of(of.steps), of.name);
     solids.extend(housed.bushings.iter().map(of_bushing));
     let cut = cut_to_window(scene, &housed, run);
-    let start = Instant::now();
-    let mut done = 0u64;
-    while start.elapsed() < TIMED && done < all {
-        for _ in 0..10 {
-            housed.advance()?;
-        }
-        done += 10;
-    }
-    let seconds = start.elapsed().as_secs_f64() / done as f64 * all as f64;
     Ok(format!(
-        "{all} windows of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s{cut}; {nodes}about \
-         {} of wall time here",
+        "{all} windows of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s{cut}{nodes}",
         housed.window,
         run.end,
         solids.join(" and "),
-        housed.simulation.step_size,
-        duration(seconds)
+        housed.simulation.step_size
     ))
 }
 
@@ -97,12 +81,4 @@ fn cut_to_window(scene: &AssemblyScene, housed: &Exchange, run: &RunSettings) ->
 
 fn steps_of(count: usize) -> String {
     if count == 1 { "one step".into() } else { format!("{count} steps") }
-}
-
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{} s", to_digits(s, 2)),
-        s if s < 7200.0 => format!("{} min", to_digits(s / 60.0, 2)),
-        s => format!("{} h", to_digits(s / 3600.0, 2)),
-    }
 }

@@ -11,7 +11,7 @@ use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::{whole_number, whole_steps};
 use bearing_dynamics::solver::plan::rubber::{self, Method};
 use bearing_dynamics::solver::plan::{Item, Stage, Subject};
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory as needed;
 use bearing_dynamics::solver::solid::rubber::steps::Stepping;
 
 pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {
@@ -19,51 +19,24 @@ pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> Com
     let mut lines: Vec<String> =
         mesh_notes(&prepared.built).iter().map(|said| note("mesh", said)).collect();
     if prepared.free.count == 0 {
-        let cost = foretold::rubber(&prepared.setup.model, "an equilibrium");
-        lines.push(note("an equilibrium takes", &memory::text(&cost)));
-        lines.push(note("equilibria at rest", WAY));
-        let rows = scene.run.as_ref().map(|run| whole_number(run.end, run.output_interval));
-        if let Some(rows) = rows {
-            let number = match scene.run.as_ref().map(|run| (run.steps, run.output_interval)) {
-                Some((RunSteps::Implicit(Stepping::Fixed(step)), interval)) => format!(
-                    "{}, and one more for each corner of motions and loads that lies within one",
-                    rows * whole_steps(interval, step)
-                ),
-                _ => format!("{rows} at least, one a row"),
-            };
-            let said = format!(
-                "{number}; each takes an equilibrium, most with the factors of an earlier one"
-            );
-            lines.push(note("steps", &said));
-            lines.push(note("factorisations", &factorisations(&prepared, scene.run.as_ref())));
-        } else {
-            let vibrations =
-                if rubber.harmonic.is_some() { "; one more for all vibrations" } else { "" };
-            let said = format!("2 or more{vibrations}");
-            lines.push(note("factorisations", &said));
-        }
+        lines.push(note("memory", &memory::text(&needed::rubber(&prepared.setup.model))));
+        lines.extend(scene.run.as_ref().map(|run| note("steps", &count(run))));
     }
     lines.extend(scene.run.as_ref().map(|run| fields_line(run, &prepared.built.mesh)));
     say_plan(&all_items(scene, rubber, &prepared), &lines)?;
     Ok(Outcome::Done)
 }
 
-/// How many factorisations the equilibrium of `bearing statics` takes, which nobody knows before it is found.
-const WAY: &str = "their way is taken in parts in which strains change by 2 % or less, two or three factorisations each: a few where strains \
-                   stay below a per cent, hundreds where they reach a tenth, as in a thin wall";
-
-/// How many there will be at least: a step at the start and behind each corner of what drives the body begins with
-/// its own.
-fn factorisations(prepared: &Prepared, run: Option<&SolidRun>) -> String {
-    let end = run.map_or(0.0, |run| run.end);
-    let corners = prepared.setup.model.corners();
-    let corners = corners.iter().filter(|corner| (0.0..end).contains(*corner) && **corner > 0.0);
-    let corners = corners.count();
-    format!(
-        "{} at least: one at the start, one behind each of {corners} corners of motions and loads; one more where \
-         steps change so much that an earlier one serves no longer, or the body bends",
-        corners + 1
-    )
+fn count(run: &SolidRun) -> String {
+    let rows = whole_number(run.end, run.output_interval);
+    let steps = match run.steps {
+        RunSteps::Implicit(Stepping::Fixed(step)) => format!(
+            "{}, and one more for each corner of motions and loads that lies within one",
+            rows * whole_steps(run.output_interval, step)
+        ),
+        _ => format!("{rows} at least, one a row"),
+    };
+    format!("{steps}; each takes an equilibrium, most with the factors of an earlier one")
 }
 
 /// Items of a run, or without one of statics.

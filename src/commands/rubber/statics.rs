@@ -3,7 +3,7 @@
 use super::{Prepared, plan, prepare, refuse_free};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::Writes;
-use crate::commands::memory::announced;
+use crate::commands::memory::refuse_beyond;
 use crate::commands::solid::statics::{WRITTEN, table, write};
 use crate::commands::solid::{record, say_mesh_notes};
 use crate::commands::{CommandResult, Outcome, interruption, placed, say};
@@ -19,7 +19,7 @@ use bearing_dynamics::scene::solid::{Harmonic, RubberScene};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solver::clock::told;
 use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory;
 use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed_while};
 use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -44,8 +44,7 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     let time = scene.run.as_ref().map_or(0.0, |run| run.end);
     let start = Instant::now();
     let model = &setup.model;
-    let cost = foretold::rubber(model, "statics");
-    announced(&cost, "")?;
+    refuse_beyond(&memory::rubber(model), "")?;
     let watch = Watch::new()?;
     let found = relaxed_while(model, time, |part| watch.see(part));
     watch.bar.finish_and_clear();

@@ -3,7 +3,7 @@
 use super::{plan, prepare, record, say_mesh_notes};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::memory::watched;
+use crate::commands::memory::within;
 use crate::commands::rubber::plan::NO_MODES;
 use crate::commands::{CommandResult, Outcome, say};
 use bearing_dynamics::output::atomic::write_atomic;
@@ -13,7 +13,7 @@ use bearing_dynamics::output::summary::solid as summary;
 use bearing_dynamics::output::warnings::{lines, solid::of_modes};
 use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::Law;
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::modes::{ModeOptions, modes_over};
 use bearing_dynamics::solver::solid::tangent::Unknowns;
@@ -36,8 +36,8 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
     let options = ModeOptions { mass: scene.mode_mass, ..ModeOptions::new(scene.mode_count) };
     let unknowns = Unknowns::new(&model);
-    let cost = foretold::modes(&model, &unknowns, scene.mode_count);
-    let found = watched(&cost, &unknowns, "", || modes_over(&model, &unknowns, &options))??;
+    let needed = memory::modes(&unknowns, scene.mode_count);
+    let found = within(&needed, "", || modes_over(&model, &unknowns, &options))??;
     let seconds = vec![
         ("mesh".into(), prepared.mesh_seconds),
         ("solve".into(), start.elapsed().as_secs_f64()),

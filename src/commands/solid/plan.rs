@@ -12,11 +12,11 @@ use bearing_dynamics::solver::clock::whole_number;
 use bearing_dynamics::solver::plan::solid::{self, Method};
 use bearing_dynamics::solver::plan::{Item, Stage, Subject};
 use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory as needed;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::step_limit::step_limit;
 use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns};
-use bearing_dynamics::solver::sparse::Cost;
+use bearing_dynamics::solver::sparse::Memory;
 
 pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     if let Law::Elastomer(rubber) = &scene.law {
@@ -27,7 +27,7 @@ pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
         mesh_notes(&prepared.built).iter().map(|said| note("mesh", said)).collect();
     let model =
         SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
-    lines.extend(factor_lines(scene, &prepared, &model));
+    lines.extend(memory_lines(scene, &prepared, &model));
     lines.extend(scene.run.as_ref().map(|run| fields_line(run, &prepared.built.mesh)));
     if let Some(run) = &scene.run
         && let RunSteps::Explicit { method, stepping, .. } = run.steps
@@ -78,12 +78,12 @@ fn step_line(
     note(name, &said)
 }
 
-/// Memory and time of what takes factors of the stiffness, from its structure alone.
-fn factor_lines(scene: &SolidScene, prepared: &Prepared, model: &SolidModel) -> Vec<String> {
+/// Memory of what takes factors of the stiffness, from its structure alone.
+fn memory_lines(scene: &SolidScene, prepared: &Prepared, model: &SolidModel) -> Vec<String> {
     let unknowns = Unknowns::new(model);
-    let statics = (prepared.free.count == 0).then(|| foretold::statics(model, &unknowns));
-    let modes = foretold::modes(model, &unknowns, scene.mode_count);
-    let line = |cost: Cost| note(&format!("{} takes", cost.task.name), &memory::text(&cost));
+    let statics = (prepared.free.count == 0).then(|| needed::statics(&unknowns));
+    let modes = needed::modes(&unknowns, scene.mode_count);
+    let line = |of: Memory| note(&format!("memory of {}", of.task.name), &memory::text(&of));
     statics.into_iter().chain([modes]).map(line).collect()
 }
 

@@ -3,7 +3,7 @@
 use super::{Prepared, plan, prepare, record, say_mesh_notes};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::memory::watched;
+use crate::commands::memory::within;
 use crate::commands::{CommandResult, Outcome, rubber, say};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::TetMesh;
@@ -16,7 +16,7 @@ use bearing_dynamics::output::warnings::{lines, solid::of_equilibrium};
 use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::solid::Law;
 use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
-use bearing_dynamics::solver::solid::foretold;
+use bearing_dynamics::solver::solid::memory;
 use bearing_dynamics::solver::solid::model::SolidModel;
 use bearing_dynamics::solver::solid::tangent::Unknowns;
 use serde_json::{Value, json};
@@ -47,12 +47,9 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     let start = Instant::now();
     let model = SolidModel::labelled(setup.problem.clone(), setup.labels.clone())?;
     let unknowns = Unknowns::new(&model);
-    let cost = foretold::statics(&model, &unknowns);
     let options = EquilibriumOptions::default();
-    let solution = watched(&cost, &unknowns, INSTEAD, || {
-        equilibrium_over(&model, unknowns.clone(), 0.0, &options)
-    })??;
-    drop(unknowns);
+    let needed = memory::statics(&unknowns);
+    let solution = within(&needed, INSTEAD, || equilibrium_over(&model, unknowns, 0.0, &options))??;
     let solve_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let stress = stresses(&model, &solution.displacement);

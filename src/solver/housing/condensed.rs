@@ -11,11 +11,11 @@ use crate::kinematics::vec3::{Vec3, add, dot, scale};
 use crate::solver::dense::DenseSymmetric;
 use crate::solver::plan::{Stage, tally::Tally};
 use crate::solver::solid::equilibrium_error::{Pivot, free_text};
-use crate::solver::solid::foretold;
+use crate::solver::solid::memory::condensed;
 use crate::solver::solid::model::SolidModel;
 use crate::solver::solid::modes::{ModeError, ModeOptions, Modes, modes_of_held};
 use crate::solver::solid::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
-use crate::solver::sparse::{Cost, Factor, FactorError};
+use crate::solver::sparse::{Factor, FactorError, Memory};
 use nalgebra::Vector3;
 use std::fmt;
 use thiserror::Error;
@@ -152,9 +152,9 @@ pub fn sizes(
     Ok(pick(model, unknowns, bore, reach)?.sizes)
 }
 
-/// What condensing onto the nodes of those sizes takes.
-pub fn cost(model: &SolidModel, unknowns: &Unknowns, sizes: &Sizes) -> Cost {
-    foretold::condensed(model, unknowns, sizes.kept, BLOCK)
+/// Memory that condensing onto the nodes of those sizes needs.
+pub fn memory(unknowns: &Unknowns, sizes: &Sizes) -> Memory {
+    condensed(unknowns, sizes.kept, BLOCK)
 }
 
 fn pick(

@@ -8,9 +8,7 @@ use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
 use crate::solver::sparse::elimination::Elimination;
 use crate::solver::sparse::graph::Graph;
-use crate::solver::sparse::{
-    self, Entry, Factor, FactorError, Ordering, Progress, SymmetricMatrix,
-};
+use crate::solver::sparse::{self, Entry, Factor, FactorError, Ordering, SymmetricMatrix};
 use std::sync::Arc;
 
 /// Marks a prescribed component.
@@ -24,8 +22,6 @@ pub struct Unknowns {
     pub count: usize,
     /// What the factors of a stiffness over them look like.
     pub elimination: Arc<Elimination>,
-    /// How far their factorisation is.
-    pub progress: Progress,
     /// Stored values of a stiffness, and of masses.
     pub stored: usize,
     pub mass_stored: usize,
@@ -46,7 +42,7 @@ impl Unknowns {
     /// # Errors
     /// A matrix that is not positive definite; no memory.
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Factor, FactorError> {
-        Factor::new(&self.elimination, matrix, &self.progress)
+        Factor::new(&self.elimination, matrix)
     }
 
     /// In an order of a given kind.
@@ -80,7 +76,7 @@ impl Unknowns {
             }
         }
         let elimination = Arc::new(elimination);
-        Unknowns { of, count, elimination, progress: Progress::default(), stored, mass_stored }
+        Unknowns { of, count, elimination, stored, mass_stored }
     }
 }
 

@@ -4,7 +4,6 @@
 use super::FactorError;
 use super::elimination::{Elimination, Panel};
 use super::matrix::SymmetricMatrix;
-use super::progress::Progress;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::{matmul, triangular};
@@ -20,7 +19,6 @@ const NONE: u32 = u32::MAX;
 /// Cholesky factors; rows and columns in the order of elimination.
 pub struct Factor {
     elimination: Arc<Elimination>,
-    progress: Progress,
     values: Vec<f64>,
 }
 
@@ -32,15 +30,13 @@ impl Factor {
     pub fn new(
         elimination: &Arc<Elimination>,
         matrix: &SymmetricMatrix,
-        progress: &Progress,
     ) -> Result<Factor, FactorError> {
         let mut values = Vec::new();
         values
             .try_reserve_exact(elimination.fill)
             .map_err(|_| FactorError::NoMemory { bytes: 8.0 * elimination.fill as f64 })?;
         values.resize(elimination.fill, 0.0);
-        let (elimination, progress) = (elimination.clone(), progress.clone());
-        let mut factor = Factor { elimination, progress, values };
+        let mut factor = Factor { elimination: elimination.clone(), values };
         factor.refactor(matrix)?;
         Ok(factor)
     }
@@ -57,7 +53,6 @@ impl Factor {
     pub fn refactor(&mut self, matrix: &SymmetricMatrix) -> Result<(), FactorError> {
         let elimination = self.elimination.clone();
         let mut owed = Owed::new(&elimination);
-        self.progress.begin();
         for (index, panel) in elimination.panels.iter().enumerate() {
             let (before, from_here) = self.values.split_at_mut(panel.values);
             let block = &mut from_here[..panel.stored()];
@@ -67,9 +62,7 @@ impl Factor {
             owed.take(before, block);
             dense(panel, block)?;
             owed.pass_on(index);
-            self.progress.add(panel.operations());
         }
-        self.progress.finish();
         Ok(())
     }
 
@@ -117,7 +110,6 @@ impl Factor {
             matmul(top.rb_mut(), Accum::Add, lower.transpose(), known, -1.0, Par::Seq);
             solve_upper_triangular_in_place(diagonal.transpose(), top, Par::Seq);
         }
-        self.progress.solved(columns);
     }
 
     fn parts(&self, panel: &Panel) -> (MatRef<'_, f64>, MatRef<'_, f64>) {

@@ -1,22 +1,20 @@
 //! Sparse symmetric matrices over the nodes of a mesh, and their Cholesky factors.
 
-pub mod cost;
 pub mod dissection;
 pub mod elimination;
 pub mod factor;
 pub mod graph;
 pub mod matrix;
+pub mod memory;
 pub mod minimum_degree;
-pub mod progress;
 pub mod separator;
 
 use crate::kinematics::vec3::Vec3;
-pub use cost::{Cost, Speed, Task, TooLarge};
 use elimination::{Elimination, analyse};
 pub use factor::Factor;
 use graph::Graph;
 pub use matrix::{Entry, SymmetricMatrix};
-pub use progress::Progress;
+pub use memory::{Memory, Task, TooLarge};
 use thiserror::Error;
 
 #[derive(Clone, Debug, PartialEq, Error)]
