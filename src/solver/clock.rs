@@ -266,7 +266,7 @@ fn towards(step: f64, left: f64) -> f64 {
     }
 }
 
-/// A time as remarks and errors tell it: six digits.
+/// A time as warnings and errors print it: six digits.
 pub fn told(time: f64) -> f64 {
     to_digits(time, 6)
 }

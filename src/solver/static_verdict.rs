@@ -28,7 +28,7 @@ impl Search<'_, '_> {
         /// Newton's last step leaves 1e-11; anything above this is a ball still on its way.
         const SETTLED: f64 = 1e-8;
         /// Loads in parts of a ball's own force (weight, centrifugal) from which on races press it. What less than that
-        /// lays on the far side of a groove hangs there loose, and says nothing of the others; remarks tell it.
+        /// lays on the far side of a groove hangs there loose, and says nothing of the others; a warning says so.
         const PRESSED: f64 = 2.0;
         for (bearing, of) in self.model.assembly.bearings.iter().enumerate() {
             let race = self.model.race(bearing, 0, &here.at);

@@ -60,7 +60,7 @@ const BODIES: [Body; 7] = [
     ("pad", [5.0, 40.0, 40.0], 0.449, PULL, [4, 12, 12], &[[1, 4, 4], [2, 8, 8]]),
 ];
 
-/// What is really missing lies between what remarks say, by the elements through the thinnest wall, and the few
+/// What is really missing lies within the band of warnings, by the elements through the thinnest wall, and the few
 /// documented cases are as documented.
 #[test]
 fn what_a_mesh_misses_is_within_the_band_of_the_estimate() {
