@@ -369,7 +369,7 @@ fn modes_of_a_shaft_are_those_of_its_stiffness_and_mass() {
     let words = format!("{BEARING}{ENDS}{SHAFT}");
     let path = write(folder.path(), "scene.toml", &words);
     let out = folder.path().join("modes");
-    let said = done(&["modes", &path, "--out", &text(&out)]);
+    done(&["modes", &path, "--out", &text(&out)]);
     let summary = json(&out.join("summary.json"));
     let modes = summary["modes"].as_array().expect("a list");
     assert_eq!(modes.len(), 5);

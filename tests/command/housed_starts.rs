@@ -1,6 +1,6 @@
 //! Runs of housed bearings begin at rest.
 
-use crate::solid_command_common::{Place, column, command, into_folder, shipped, succeed};
+use crate::solid_command_common::{Place, column, into_folder, shipped, succeed};
 
 /// A race that is loose by 40 µm goes that far across to where it is carried, where nodes are 11 nm beside where normals that stay
 /// have them. Balls and bore push it as hard at the start, whatever method takes the steps; off by the force with which balls are held

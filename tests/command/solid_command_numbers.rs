@@ -375,7 +375,7 @@ fn meshes_that_lock_or_are_too_coarse_are_warned_of() {
         }
     }
     // One element each way, two, and one through a thin bar: 13.6, 3.9 and 2.7 % are missing.
-    let cube = |count: usize| bent([count; 3], 2, "0.3", "-10 N").replace("100 mm", "10 mm");
+    let cube = |count: u8| bent([count; 3], 2, "0.3", "-10 N").replace("100 mm", "10 mm");
     let thin =
         bent([10, 1, 1], 2, "0.3", "-0.01 N").replace("height = \"10 mm\"", "height = \"2 mm\"");
     for (scene, missing, wall) in [
