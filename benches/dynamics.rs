@@ -8,13 +8,13 @@ mod common;
 #[path = "../tests/common/dynamics.rs"]
 mod dynamics;
 
+use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::assembly::state::{Layout, POSITION};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, POSITION};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::motion::start;
 use dynamics::{GRAVITY, RPM, bearing, cage, inner_state, traction_laws};
 use std::time::Instant;
 
@@ -64,7 +64,7 @@ fn run(
     problem: &DynamicProblem,
     integrator: Integrator,
     stepping: Stepping,
-    driver: Driver,
+    driver: Kernel,
     end: f64,
     rows: usize,
 ) -> Run {
@@ -122,7 +122,7 @@ fn compare(found: &Run, reference: &Run, from: usize) -> [f64; 3] {
 fn accuracy_table(name: &str, problem: &DynamicProblem, reference_step: f64) {
     let (end, rows) = (0.02, 200);
     let steady = rows / 2;
-    let (method, lanes) = (Integrator::Rosenbrock, Driver::Lanes);
+    let (method, lanes) = (Integrator::Rosenbrock, Kernel::Simd);
     let reference = run(problem, method, Stepping::Fixed(reference_step), lanes, end, rows);
     println!("\n{name}: 20 ms, reference rosenbrock at {reference_step:e} s");
     let moved = kicked(problem, reference_step, end, rows);
@@ -159,7 +159,7 @@ fn accuracy_table(name: &str, problem: &DynamicProblem, reference_step: f64) {
 }
 
 /// Least seconds of a Runge–Kutta step out of many batches.
-fn step_seconds(problem: &DynamicProblem, driver: Driver) -> f64 {
+fn step_seconds(problem: &DynamicProblem, driver: Kernel) -> f64 {
     let options = RunOptions {
         stepping: Stepping::Fixed(1e-7),
         driver,
@@ -181,7 +181,7 @@ fn step_seconds(problem: &DynamicProblem, driver: Driver) -> f64 {
 
 fn main() {
     let bare = problem(false, ContactDamping::None);
-    let [plain, lanes] = [Driver::Plain, Driver::Lanes].map(|driver| step_seconds(&bare, driver));
+    let [plain, lanes] = [Kernel::Scalar, Kernel::Simd].map(|driver| step_seconds(&bare, driver));
     let ratio = plain / lanes;
     println!(
         "Runge-Kutta step, 8 balls, 2 races, 15 slices: plain {:.2} us, lanes {:.2} us, ratio {ratio:.2}",
@@ -189,7 +189,7 @@ fn main() {
         lanes * 1e6
     );
     // Explicit steps below the onset of traction, over a short window, against the reference.
-    let (method, lanes) = (Integrator::Rosenbrock, Driver::Lanes);
+    let (method, lanes) = (Integrator::Rosenbrock, Kernel::Simd);
     let rk4 = run(&bare, Integrator::RungeKutta, Stepping::Fixed(1.25e-7), lanes, 2e-3, 20);
     let fine = run(&bare, method, Stepping::Fixed(2.5e-7), lanes, 2e-3, 20);
     let [difference, swing, _] = compare(&rk4, &fine, 0);

@@ -16,8 +16,8 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::numbering::reverse_cuthill_mckee;
 use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::tet_mesh::Elements;
-use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
-use bearing_dynamics::solver::solid::team::Crew;
+use bearing_dynamics::solids::explicit::ExplicitSolid;
+use bearing_dynamics::solids::threads::WorkerPool;
 use common::{cube, least};
 use nalgebra::{Matrix3, Matrix3x4};
 use plain::{PlainElement, PlainNodes, plain_elements};
@@ -107,7 +107,7 @@ fn main() {
         let steps = (4_000_000 / count).max(2);
         let mut plain = Plain::new(&solid);
         let mut team = self::solid(&cube(cells));
-        team.share(&Crew::new(2), 2);
+        team.share(&WorkerPool::new(2), 2);
         // In turn, so that all see the same machine.
         let (mut of_plain, mut of_lanes, mut of_two) = (f64::MAX, f64::MAX, f64::MAX);
         let mut turn = 0;

@@ -3,7 +3,7 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve, solve_from};
+use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve, solve_from};
 use common::{FREE, problem, table_4_1};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

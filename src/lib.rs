@@ -8,13 +8,19 @@
 // Indices are the notation of components, as in the equations.
 #![allow(clippy::needless_range_loop)]
 
+pub mod assembly;
 pub mod ch2_housing;
 pub mod ch3_bushing;
 pub mod ch4_rotor;
 pub mod ch5_cage;
 pub mod elements;
+pub mod equilibrium;
 pub mod kinematics;
+pub mod members;
 pub mod mesh;
+pub mod motion;
+pub mod numeric;
 pub mod output;
 pub mod scene;
-pub mod solver;
+pub mod solids;
+pub mod vibrations;

@@ -4,28 +4,26 @@ mod common;
 #[path = "common/dynamics.rs"]
 mod dynamics;
 
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch2_housing::elastomer::named::table_3_1;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::members::beam::{Beam, BeamSegment};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::flexible_shaft::{ElasticShaft, ShaftLoad, Unbalance};
+use bearing_dynamics::members::shaft_modes::{Kept, free_shaft};
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::tet_mesh::Elements;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, ShaftLoad, Unbalance};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamSegment};
-use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
-use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solids::rubber::explicit::RubberBody;
+use bearing_dynamics::solids::rubber::tet_forces::MeanStress;
 use common::table_4_1;
 use dynamics::*;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -183,7 +181,7 @@ fn steps_of_a_bearing_allocate_nothing() {
     ];
     for (name, problem) in [("full", full()), ("table", tables), ("bare", bare)] {
         for (integrator, stepping) in integrators {
-            for driver in [Driver::Plain, Driver::Lanes] {
+            for driver in [Kernel::Scalar, Kernel::Simd] {
                 let options = RunOptions {
                     integrator,
                     stepping,

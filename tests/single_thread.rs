@@ -3,9 +3,10 @@
 //! A file with a single test: another test beside it would be another thread.
 #![cfg(target_os = "linux")]
 
-use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::scene::{self, Format};
-use bearing_dynamics::solver::statics::solve;
+use bearing_dynamics::equilibrium::statics::solve;
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::Format;
+use bearing_dynamics::scene::build::statics::static_problem;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -121,7 +122,7 @@ fn only_the_sweep_knows_of_threads() {
     let known = [
         "src/commands/memory.rs",
         "src/commands/sweep/mod.rs",
-        "src/solver/solid/team.rs",
+        "src/solids/threads.rs",
         "verification/src/mutants/mod.rs",
         "verification/src/runner.rs",
     ];

@@ -1,7 +1,7 @@
 //! What plain element loops share: gradients of four-node elements, and nodes that go on by central differences.
 
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
+use bearing_dynamics::solids::explicit::ExplicitSolid;
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
 /// Gradients of the shape functions (1/m), volume (m³), nodes.

@@ -2,8 +2,8 @@
 
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::tet_mesh::TetMesh;
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{DampedMotion, SolidModel, SolidProblem};
 
 /// It moves from a slight shear and twist on.
 pub fn solid(mesh: &TetMesh) -> ExplicitSolid {

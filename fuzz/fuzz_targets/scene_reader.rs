@@ -1,7 +1,8 @@
 //! No bytes may make the scene reader panic, in either format.
 #![no_main]
 
-use bearing_dynamics::scene::{self, Document, Format};
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::{Document, Format};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

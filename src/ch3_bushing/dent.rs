@@ -10,7 +10,7 @@
 //! F = K_H w^{3/2} ∂w/∂δ,  and  n = 3/2 + ln(F/(K_H δ^{3/2}))/ln(δ/1 m),
 //!
 //! so that (3.20) holds in SI numbers, with a reference length of 1 m. Far from the dent Δ = 0, n = 3/2. A table of Δ is made once from a half-space
-//! (`solver::dent_table`), which needs the dent and both relative radii of the contact and nothing else.
+//! (`members::dent_table`), which needs the dent and both relative radii of the contact and nothing else.
 
 use std::f64::consts::{PI, TAU};
 

@@ -11,7 +11,7 @@
 //!
 //! A force that goes with load times stretch is no gradient. Pressing harder on a stretched spring stores
 //! energy in it that no motion along the surface has put there, and easing it takes some out: what two surfaces do to
-//! each other is what is stored and lost, less that ([`Pull::load_work`]). Where long springs hold a race against a
+//! each other is what is stored and lost, less that ([`FrictionUpdate::load_work`]). Where long springs hold a race against a
 //! torque, whose radial motion changes their loads, this pushes it on in circles: a share c of what slips makes its swing grow by
 //! up to ½ μ c of the swing's own rate. Springs as stiff as the contact know of no load until they slip.
 
@@ -58,7 +58,7 @@ impl Spring {
 
 /// A spring after a step, and what happened in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pull {
+pub struct FrictionUpdate {
     pub spring: Spring,
     pub slips: bool,
     /// Of slipping, J.
@@ -92,7 +92,7 @@ impl BoreFriction {
         normal: Vec3,
         load: f64,
         normal_stiffness: f64,
-    ) -> Pull {
+    ) -> FrictionUpdate {
         let slip_stretch = self.slip_stretch(load, normal_stiffness);
         let touched = before.stiffness > 0.0;
         let anchor = if touched { before.anchor } else { place };
@@ -106,7 +106,7 @@ impl BoreFriction {
         let spring = Spring { anchor, stretch, stiffness };
         let mean = scale(add(before.force(), spring.force()), 0.5);
         let stiffer = stiffness - before.stiffness;
-        Pull {
+        FrictionUpdate {
             spring,
             slips,
             heat: if slips { dot(mean, sub(trial, stretch)) } else { 0.0 },

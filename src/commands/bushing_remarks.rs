@@ -1,15 +1,16 @@
 //! How far the springs that stand for bushings hold, and where a run went beyond.
 
+use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::equilibrium::statics::AssemblySolution;
+use bearing_dynamics::members::rigid_body;
+use bearing_dynamics::members::rigid_body::kinematics_at_mount;
+use bearing_dynamics::numeric::clock::{display_time, to_digits};
 use bearing_dynamics::output::bushing_reach::{Beyond, beyond, farthest};
 use bearing_dynamics::output::session::Session;
 use bearing_dynamics::output::warnings::{Warning, WarningCode};
-use bearing_dynamics::scene::assembly::{AssemblyScene, BushingOfSpring, Spring};
-use bearing_dynamics::scene::bushing_reach::{PART, reach};
-use bearing_dynamics::solver::clock::{to_digits, told};
-use bearing_dynamics::solver::dynamics::race::{self, mounted};
-use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
-use bearing_dynamics::solver::static_assembly::StaticAssembly;
-use bearing_dynamics::solver::statics::AssemblySolution;
+use bearing_dynamics::scene::build::assembly::{AssemblyScene, BushingOfSpring, Spring};
+use bearing_dynamics::scene::build::bushing_reach::{PART, reach};
+use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
 
 /// How far a bushing may move before the springs that stand for it stop holding; one line for each that is not solved in
 /// elements.
@@ -66,10 +67,13 @@ pub fn pushed(
     let mut warnings = Vec::new();
     for (spring, connection) in scene.springs.iter().zip(&assembly.connections) {
         let Some(wall) = spring.bushing.as_ref().map(|of| of.body.thickness) else { continue };
-        let ends = connection
-            .ends
-            .map(|mount| mounted(&race::fixed(&solution.coordinates[mount.body].into()), &mount));
-        let [gone, _] = connection.reach([&ends[0], &ends[1]]);
+        let ends = connection.ends.map(|mount| {
+            kinematics_at_mount(
+                &rigid_body::fixed(&solution.coordinates[mount.body].into()),
+                &mount,
+            )
+        });
+        let [gone, _] = connection.extension([&ends[0], &ends[1]]);
         refuse_through(&spring.name, gone, wall)?;
         if gone > FAR_IN_WALL * wall {
             let text = format!(
@@ -119,7 +123,7 @@ pub fn beyond_bushings(scene: &AssemblyScene, session: &Session) -> Vec<Warning>
         let text = format!(
             "bushing {} moves {went} at t = {} s: its springs, fitted to small vibrations, are {} % off from {holds} on",
             scene.springs[beyond.spring].name,
-            told(beyond.time),
+            display_time(beyond.time),
             100.0 * PART
         );
         Some(Warning::new(WarningCode::BushingBeyondFit, text))

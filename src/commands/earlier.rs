@@ -1,11 +1,11 @@
 //! What lies in a results folder before a command writes there: what may be replaced, and its removal.
 
 use super::{pictures, say};
+use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::fields;
 use bearing_dynamics::output::folder::{Holds, ResultsFolder, claim, holds};
 use bearing_dynamics::output::json;
 use bearing_dynamics::output::state::arrays::remove_arrays;
-use bearing_dynamics::solver::clock::rounded;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 

@@ -4,11 +4,11 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{
     BearingKind, ClearanceThrough, Material, Raceway,
 };
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, HertzModel};
+use bearing_dynamics::equilibrium::statics::{COORDINATE_NAMES, Condition, StaticProblem};
 use bearing_dynamics::output::results::{ResultsError, quantity};
-use bearing_dynamics::scene::resolved::RaceDimensions;
-use bearing_dynamics::scene::statics::kinematic_ratios;
+use bearing_dynamics::scene::build::statics::kinematic_ratios;
+use bearing_dynamics::scene::resolve::resolved::RaceDimensions;
 use bearing_dynamics::scene::{Cage, Scene};
-use bearing_dynamics::solver::statics::{COORDINATE_NAMES, Condition, StaticProblem};
 use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;

@@ -1,20 +1,20 @@
 //! What was understood of the bearing in motion, as JSON with units.
 
+use bearing_dynamics::assembly::lists::BallMeeting;
+use bearing_dynamics::assembly::loads::{
+    CageBody, Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation,
+};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::ch3_bushing::dent::Dent;
+use bearing_dynamics::equilibrium::statics::COORDINATE_NAMES;
+use bearing_dynamics::motion::simulation::{Start, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::results::{ResultsError, quantity};
-use bearing_dynamics::scene::assembly::SceneBody;
+use bearing_dynamics::scene::build::assembly::SceneBody;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Plot, RunPlot, RunSettings, Scene};
-use bearing_dynamics::solver::dynamics::assembly::BallMeeting;
-use bearing_dynamics::solver::dynamics::model::{
-    CageBody, Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation,
-};
-use bearing_dynamics::solver::dynamics::run::{Start, Stepping};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::COORDINATE_NAMES;
 use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
@@ -155,7 +155,7 @@ pub fn inertia(inertia: &Inertia) -> Echo {
     }))
 }
 
-fn race(body: &RaceBody) -> Echo {
+fn race(body: &DrivenBody) -> Echo {
     let mut echo = Map::new();
     echo.insert("inertia".into(), inertia(&body.inertia)?);
     for (i, name) in COORDINATE_NAMES.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! How much memory a command may take, and a sign of life while it works.
 
+use bearing_dynamics::numeric::sparse::{Memory, TooLarge};
 use bearing_dynamics::output::amounts::size;
-use bearing_dynamics::solver::sparse::{Memory, TooLarge};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::OnceLock;

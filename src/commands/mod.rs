@@ -24,12 +24,12 @@ pub mod sweep;
 pub mod table;
 mod warnings;
 
+use bearing_dynamics::assembly::plan::Item;
+use bearing_dynamics::assembly::plan::counts::StageCounts;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::visible::visible;
-use bearing_dynamics::scene::about::About;
+use bearing_dynamics::scene::build::about::About;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Document};
-use bearing_dynamics::solver::plan::Item;
-use bearing_dynamics::solver::plan::tally::Ran;
 use serde_json::Value;
 use std::error::Error;
 use std::io::Write;
@@ -179,7 +179,7 @@ pub fn record(
     RunRecord {
         scene,
         plan,
-        ran: Ran::default(),
+        ran: StageCounts::default(),
         assumptions: assumptions.chain(defaults.iter().map(default)).collect(),
         threads: 1,
         seconds,

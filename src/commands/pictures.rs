@@ -1,13 +1,13 @@
 //! Plots of a static solution: load zone, ball force over azimuth, moment over tilt.
 
+use bearing_dynamics::equilibrium::statics::{
+    Condition, StaticOptions, StaticProblem, StaticSolution, solve_from,
+};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::plots::{
     Axis, Curve, LoadZone, PolarPlot, Style, XyPlot, load_zone, polar, xy,
 };
 use bearing_dynamics::scene::{Plot, Scene};
-use bearing_dynamics::solver::statics::{
-    Condition, StaticOptions, StaticProblem, StaticSolution, solve_from,
-};
 use nalgebra::SVector;
 use std::error::Error;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! `bearing plan SCENE`.
 
 use super::{Changes, CommandResult, assembly, say, solid};
+use bearing_dynamics::assembly::plan::Item;
 use bearing_dynamics::scene::{Subject, resolve_subject};
-use bearing_dynamics::solver::plan::Item;
 use std::error::Error;
 use std::path::PathBuf;
 

@@ -1,17 +1,17 @@
 //! What `bearing plan` says of the steps of a run: how long, why, how many, and what would make them
 //! longer.
 
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::clock::{given_steps, to_digits, whole_steps};
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::clocked::RunRequest;
-use bearing_dynamics::solver::dynamics::foretell::{FARTHEST_OFF, Foretold, WITHIN, foretell};
-use bearing_dynamics::solver::dynamics::run::{
+use bearing_dynamics::motion::clocked::RunRequest;
+use bearing_dynamics::motion::foretell::{FARTHEST_OFF, Foretold, WITHIN, foretell};
+use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
-use bearing_dynamics::solver::dynamics::stability::{Cause, StepLimit, step_limit};
-use bearing_dynamics::solver::dynamics::step_watch::TOLERATED;
-use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::motion::stability::{Cause, StepLimit, step_limit};
+use bearing_dynamics::motion::step_watch::TOLERATED;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::clock::{given_steps, to_digits, whole_steps};
 use std::error::Error;
 
 /// From here on a friction onset that makes steps shorter than contacts need is worth a word.

@@ -3,7 +3,7 @@
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::json_schema;
-use bearing_dynamics::scene::reference::reference_markdown;
+use bearing_dynamics::scene::tables::manual::reference_markdown;
 
 #[derive(clap::Args)]
 pub struct Arguments {

@@ -1,11 +1,11 @@
 //! A static solution as a person reads it on a terminal.
 
-use bearing_dynamics::output::results::load_zone_of;
-use bearing_dynamics::output::warnings::{Warning, lines};
-use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
-use bearing_dynamics::solver::statics::{
+use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
+use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, BallState, COORDINATE_NAMES, ContactState, StaticSolution,
 };
+use bearing_dynamics::output::results::load_zone_of;
+use bearing_dynamics::output::warnings::{Warning, lines};
 use std::fmt::Write;
 
 /// Position, reactions, stiffness, balls, `housing` in lines of its own, and warnings.

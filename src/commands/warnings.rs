@@ -1,21 +1,23 @@
 //! Warnings of commands on bearings: one set for equilibria and runs.
 
 use crate::commands::bushing_remarks::{beyond_bushings, pushed};
+use bearing_dynamics::assembly::lists::Bearing;
+use bearing_dynamics::assembly::loads::Rotation;
+use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use bearing_dynamics::equilibrium::statics::{
+    AssemblySolution, BallState, ContactState, Determinacy,
+};
+use bearing_dynamics::motion::extremes::{Extreme, Extremes};
+use bearing_dynamics::motion::validity::FARTHEST_BENT;
+use bearing_dynamics::numeric::clock::{display_time, to_digits};
 use bearing_dynamics::output::session::Session;
 use bearing_dynamics::output::warnings::{Warning, WarningCode};
-use bearing_dynamics::scene::assembly::{AssemblyScene, BushingStepping, PlacedBearing};
-use bearing_dynamics::scene::excitations::{excitations, largest};
-use bearing_dynamics::scene::statics::{ball_mass, orbital_speed};
+use bearing_dynamics::scene::build::assembly::{AssemblyScene, BushingStepping, PlacedBearing};
+use bearing_dynamics::scene::build::excitations::{excitations, largest};
+use bearing_dynamics::scene::build::statics::{ball_mass, orbital_speed};
 use bearing_dynamics::scene::{CageInRun, RunPlot, Scene};
-use bearing_dynamics::solver::clock::{to_digits, told};
-use bearing_dynamics::solver::dynamics::assembly::Bearing;
-use bearing_dynamics::solver::dynamics::bounds::FARTHEST_BENT;
-use bearing_dynamics::solver::dynamics::extremes::{Extreme, Extremes};
-use bearing_dynamics::solver::dynamics::model::Rotation;
-use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
-use bearing_dynamics::solver::statics::{AssemblySolution, BallState, ContactState, Determinacy};
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 
@@ -46,7 +48,7 @@ struct Seen {
 
 impl Seen {
     fn when(&self, of: &Extreme) -> String {
-        if self.moves { format!(" at t = {} s", told(of.time)) } else { String::new() }
+        if self.moves { format!(" at t = {} s", display_time(of.time)) } else { String::new() }
     }
 }
 

@@ -1,15 +1,15 @@
 //! The results folder of an equilibrium of several bodies: `summary.json` with a part for each body and each
 //! bearing, and `series.csv` with a row for each ball of each bearing.
 
+use crate::assembly::lists::Assembly;
+use crate::assembly::static_lists::{Place, StaticAssembly};
+use crate::equilibrium::bearing_tables::BearingState;
+use crate::equilibrium::statics::{AssemblySolution, COORDINATE_NAMES};
 use crate::output::results::{
     ResultsError, RunRecord, ball, ball_columns, ball_rows, determinacy, insert_record, load_zone,
     place_and_loads, quantity, solver, vector, write_results,
 };
 use crate::output::series::{Column, Series};
-use crate::solver::dynamics::assembly::Assembly;
-use crate::solver::static_assembly::{Place, StaticAssembly};
-use crate::solver::static_tables::BearingState;
-use crate::solver::statics::{AssemblySolution, COORDINATE_NAMES};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::{PI, TAU};

@@ -1,12 +1,12 @@
 //! Where a run took a bushing beyond what the springs that stand for it hold for, by the rows of its table.
 
+use crate::assembly::lists::{Assembly, Mobility};
+use crate::assembly::mount::Mount;
+use crate::members::connection::Law;
 use crate::output::recorder::Recorder;
-use crate::scene::assembly::{AssemblyScene, BushingOfSpring};
-use crate::scene::bushing_reach::unasked;
-use crate::solver::dynamics::assembly::{Assembly, Mobility};
-use crate::solver::dynamics::connection::Law;
-use crate::solver::mount::Mount;
-use crate::solver::solid::rubber::sleeve::SleeveMotion;
+use crate::scene::build::assembly::{AssemblyScene, BushingOfSpring};
+use crate::scene::build::bushing_reach::unasked;
+use crate::solids::rubber::sleeve::SleeveMotion;
 
 /// The farthest that a sleeve went in one motion, where the springs no longer hold.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 
 use crate::output::atomic::{WriteError, remove_partials, write_atomic};
 use crate::output::results::pretty;
-use crate::scene::input_file::{self, InputError, LARGEST_JSON};
+use crate::scene::text::input_file;
+use crate::scene::text::input_file::{InputError, LARGEST_JSON};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

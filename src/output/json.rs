@@ -1,7 +1,8 @@
 //! JSON files of results, read within bounds: a tree takes up to a hundred times the memory of its
 //! text, so that its values are counted before it is built.
 
-use crate::scene::input_file::{self, InputError, LARGEST_JSON};
+use crate::scene::text::input_file;
+use crate::scene::text::input_file::{InputError, LARGEST_JSON};
 use serde_json::Value;
 use std::path::Path;
 use thiserror::Error;

@@ -1,12 +1,12 @@
 //! The results folder of natural motions of bodies: `summary.json`, and `series.csv` with a row for each.
 
+use crate::assembly::lists::Assembly;
+use crate::assembly::static_lists::StaticAssembly;
+use crate::equilibrium::statics::COORDINATE_NAMES;
 use crate::output::assembly_results::key;
 use crate::output::results::{ResultsError, RunRecord, insert_record, quantity, write_results};
 use crate::output::series::{Column, Series};
-use crate::solver::dynamics::assembly::Assembly;
-use crate::solver::housing::inertia::{Mode, MovingBody};
-use crate::solver::static_assembly::StaticAssembly;
-use crate::solver::statics::COORDINATE_NAMES;
+use crate::vibrations::quasi_static_limit::{Mode, MovingBody};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;

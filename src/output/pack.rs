@@ -15,7 +15,8 @@ use crate::output::compare::tolerance::{
     ChannelTolerance, ToleranceClass, ToleranceError, Tolerances,
 };
 use crate::output::results::{ResultsError, RunRecord, pretty};
-use crate::scene::input_file::{self, InputError, LARGEST_DATA, LARGEST_JSON};
+use crate::scene::text::input_file;
+use crate::scene::text::input_file::{InputError, LARGEST_DATA, LARGEST_JSON};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};

@@ -9,13 +9,13 @@
 //! Lengths in m, loads in N and N m, angles in degrees. `summary.json` is written last: a folder
 //! that has it is complete.
 
-use crate::output::atomic::{WriteError, write_atomic};
-use crate::output::series::{Column, Series, SeriesError, columns_path};
-use crate::solver::plan::tally::Ran;
-use crate::solver::plan::{Item, counted};
-use crate::solver::statics::{
+use crate::assembly::plan::counts::StageCounts;
+use crate::assembly::plan::{Item, counted};
+use crate::equilibrium::statics::{
     BallState, COORDINATE_NAMES, ContactState, Determinacy, StaticSolution,
 };
+use crate::output::atomic::{WriteError, write_atomic};
+use crate::output::series::{Column, Series, SeriesError, columns_path};
 use nalgebra::{SVector, Vector3};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
@@ -30,7 +30,7 @@ pub struct RunRecord {
     /// What the run consisted of, and what was left out and why.
     pub plan: Vec<Item>,
     /// How often each stage ran.
-    pub ran: Ran,
+    pub ran: StageCounts,
     /// Name and text of each assumption that fills a hole in the source.
     pub assumptions: Vec<(String, String)>,
     pub threads: usize,

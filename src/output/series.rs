@@ -6,7 +6,8 @@
 
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::npy::{self, MOST_COLUMNS, NpyError};
-use crate::scene::input_file::{self, InputError, LARGEST_DATA, LARGEST_JSON};
+use crate::scene::text::input_file;
+use crate::scene::text::input_file::{InputError, LARGEST_DATA, LARGEST_JSON};
 use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;

@@ -1,10 +1,10 @@
 //! The time series of a run as its summary and its plots look at it.
 
+use crate::assembly::lists::Assembly;
+use crate::numeric::clock::to_digits;
 use crate::output::series::{Series, SeriesError};
 use crate::output::session::Session;
 use crate::output::spectrum::{Spectrum, spectrum};
-use crate::solver::clock::to_digits;
-use crate::solver::dynamics::assembly::Assembly;
 use std::ops::Range;
 
 /// All rows of a run, and which of them means and spectra are taken over.

@@ -1,6 +1,6 @@
 //! What can be wrong with a scene. Every error says what, where, what is allowed and what to do.
 
-use crate::scene::units::Dimension;
+use crate::scene::text::units::Dimension;
 use std::fmt;
 use thiserror::Error;
 
@@ -332,5 +332,5 @@ fn um(metres: f64) -> String {
 
 fn nine_digits(value: f64) -> String {
     let rounded: f64 = format!("{value:.8e}").parse().unwrap_or(value);
-    crate::scene::units::plain(rounded)
+    crate::scene::text::units::plain(rounded)
 }

@@ -1,14 +1,14 @@
 //! What can be wrong with a housing and its bore.
 
-use crate::scene::about::About;
-use crate::scene::solid_problem::SolidSetupError;
-use crate::solver::solid::model::SolidError;
+use crate::scene::build::about::About;
+use crate::scene::build::solid::SolidSetupError;
+use crate::solids::model::SolidError;
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
 /// What the nodes under the race may stand for, as a part of the bore that it covers: two rows of nodes at
 /// its edges and one between give 1.5 in a longer bore, and 0.5 where those at its edges are missed.
-pub(super) const SHARES: RangeInclusive<f64> = 0.6..=1.6;
+pub(crate) const SHARES: RangeInclusive<f64> = 0.6..=1.6;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum HousingSetupError {
     #[error(transparent)]
@@ -76,8 +76,8 @@ pub enum HousingSetupError {
     )]
     OneRow { count: usize, width: f64, at: f64 },
     #[error(
-        "housing.bore: all {count} nodes of \"{bore}\" under the race are held by [[solid.held]]: the bore cannot \
-         give way, and nothing of the solid counts. Hold another set, or write method = \"rigid\" in [housing]"
+        "housing.bore: all {count} nodes of \"{bore}\" under the race are held by [[solid.fixed]]: the bore cannot \
+         give way, and nothing of the solid counts. AttachedStation another set, or write method = \"rigid\" in [housing]"
     )]
     HeldBore { bore: String, count: usize },
     #[error("housing: the fit leaves the outer race {:.1} um larger than the bore, more than {:.1} um",
@@ -89,7 +89,7 @@ pub enum HousingSetupError {
     )]
     VaryingLoad { index: usize },
     #[error(
-        "solid.held.{axis}: the housing of `quasi-static` and of `reduced` is held at zero; write \
+        "solid.fixed.{axis}: the housing of `quasi-static` and of `reduced` is held at zero; write \
          {axis} = true, or method = \"explicit\" in [housing]"
     )]
     MovedSupport { index: usize, axis: &'static str },
@@ -117,7 +117,7 @@ pub struct Lies {
 }
 
 impl Lies {
-    pub(super) fn of(seen: &[[f64; 3]]) -> Lies {
+    pub(crate) fn of(seen: &[[f64; 3]]) -> Lies {
         let mut lies = Lies { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
         for place in seen {
             for (i, at) in place.iter().enumerate() {
@@ -158,7 +158,7 @@ impl HousingSetupError {
                 About::Item { table: "solid.load", index: *index, key: "set" }
             }
             HousingSetupError::MovedSupport { index, axis: key } => {
-                About::Item { table: "solid.held", index: *index, key }
+                About::Item { table: "solid.fixed", index: *index, key }
             }
         })
     }

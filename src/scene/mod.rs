@@ -17,78 +17,27 @@
 //! assert!((scene.geometry.ball_radius - 5.9555e-3).abs() <= 1e-15);
 //! # Ok::<(), scene::SceneError>(())
 //! ```
-pub mod about;
-pub mod assembly;
-mod base;
-pub mod bore_shape;
-pub mod bushing_problem;
-pub mod bushing_reach;
-mod deck_materials;
-pub mod document;
-pub mod dynamics;
+pub mod build;
 pub mod error;
-pub mod excitations;
-pub mod housing;
 pub mod housing_error;
-pub mod housing_problem;
-pub mod input_file;
-mod items;
-mod key_table;
-mod key_table_assembly;
-mod key_table_dynamics;
-mod key_table_housing;
-mod key_table_sensor;
-mod key_table_shaft;
-mod key_table_solid;
-pub mod keys;
-mod profile;
-pub mod reference;
-mod resolve;
-mod resolve_assembly;
-mod resolve_bushing;
-mod resolve_cage;
-mod resolve_contact;
-mod resolve_dynamics;
-mod resolve_geometry;
-mod resolve_housing;
-mod resolve_places;
-mod resolve_rubber;
-mod resolve_sensor;
-mod resolve_shaft;
-mod resolve_solid;
-mod resolve_solid_mesh;
-mod resolve_spring;
-pub mod resolved;
-pub mod rubber_problem;
-pub mod schema;
-mod scopes;
-pub mod sensors;
-pub mod shaft_problem;
-pub mod solid;
-pub mod solid_mesh;
-pub mod solid_problem;
-mod source;
-pub mod statics;
-pub mod sweep;
-mod symmetry;
-mod tree;
-pub mod units;
-mod value;
+pub mod resolve;
+pub mod tables;
+pub mod text;
 
-pub use document::Document;
 pub use error::{Place, Problem, SceneError};
-pub use housing::HousedScene;
-pub use resolve::resolve;
-pub use resolve_solid::resolve_subject;
-pub use resolve_solid_mesh::{KEY_OF_DIMENSION, key_of_dimension};
-pub use resolved::{
+pub use resolve::bearing::resolve;
+pub use resolve::housing_scene::HousedScene;
+pub use resolve::resolved::{
     Assumption, Cage, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot, RaceDimensions, RunPlot,
     RunSettings, Scene,
 };
-pub use schema::json_schema;
-pub use solid::{SolidScene, Subject};
-pub use source::{Format, LARGEST_FILE};
-pub use sweep::{SweepAxis, SweepValues};
+pub use resolve::solid::resolve_subject;
+pub use resolve::solid_mesh::{KEY_OF_DIMENSION, key_of_dimension};
+pub use resolve::solid_scene::{SolidScene, Subject};
+pub use tables::schema::json_schema;
+pub use text::document::Document;
+pub use text::source::{Format, LARGEST_FILE};
+pub use text::sweep::{SweepAxis, SweepValues};
 
 use std::path::Path;
 

@@ -7,24 +7,24 @@ use crate::bent_shafts::{
 };
 use crate::dynamics;
 
+use bearing_dynamics::assembly::lists::{Assembly, Mobility};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::plan::counts::Counts;
+use bearing_dynamics::assembly::plan::{Stage, Subject};
+use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::race;
-use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Start, Stepping};
-use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, Section, ShaftSteps};
-use bearing_dynamics::solver::dynamics::stability::jacobian;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::plan::{Stage, Subject};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::rotor::beam::{BeamMatrices, STATION};
-use bearing_dynamics::solver::shaft_shapes::{Kept, ShaftShapes};
+use bearing_dynamics::members::beam::{BeamMatrices, STATION};
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::flexible_shaft::{ElasticShaft, Section, ShaftSteps};
+use bearing_dynamics::members::rigid_body;
+use bearing_dynamics::members::shaft_modes::{Kept, ShaftShapes};
+use bearing_dynamics::motion::simulation::{Integrator, Simulation, Start, Stepping};
+use bearing_dynamics::motion::stability::jacobian;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use dynamics::*;
 use nalgebra::{Complex, DMatrix, DVector, Vector3};
 
@@ -89,7 +89,7 @@ fn a_spinning_shaft_rings_as_the_whole_beam() {
             let mut assembly = alone(&beam, kept, &holds, speed);
             on_springs(&mut assembly, &holds, stiffness);
             let state = start::nominal(&assembly);
-            let mut system = System::new(assembly.clone(), Driver::Plain);
+            let mut system = System::new(assembly.clone(), Kernel::Scalar);
             let mut motion = jacobian(&mut system, 0.0, &state);
             // It counts turns from axes that stand still; against a spinning body they go round.
             let turn = 9;
@@ -220,7 +220,7 @@ fn an_unbalance_pushes_as_its_mass_is_accelerated() {
     let angle = unbalance.angle;
     assembly.shafts[0].unbalances.push(unbalance);
     let mut state = start::nominal(&assembly);
-    let mut system = System::new(assembly.clone(), Driver::Plain);
+    let mut system = System::new(assembly.clone(), Kernel::Scalar);
     let at = system.places.body(0);
     state[at + SPIN] = faster * t;
     let mut rates = vec![0.0; state.len()];
@@ -269,7 +269,7 @@ fn free_together() -> Assembly {
     let ring = hollow_cylinder(36e-3, 40e-3, 16e-3, 7850.0);
     for index in [1, 2] {
         assembly.bodies[index].mobility =
-            Mobility::Driven(RaceBody { inertia: ring, ..free_race() }.into());
+            Mobility::Driven(DrivenBody { inertia: ring, ..free_race() }.into());
     }
     for (ring, at) in [(1, 0.1), (2, 0.35)] {
         let along = [along(&assembly, at), at - assembly.bodies[ring].rest[0]];
@@ -291,7 +291,7 @@ fn free_together() -> Assembly {
 fn a_free_bending_shaft_keeps_momentum_and_energy() {
     let assembly = free_together();
     let mut state = start::nominal(&assembly);
-    let places = bearing_dynamics::solver::dynamics::state::Places::of(&assembly);
+    let places = bearing_dynamics::assembly::state::Places::of(&assembly);
     let at = places.body(0);
     for (entry, value) in [(VELOCITY + 1, 0.02), (VELOCITY, 0.01), (SPIN, 300.0), (SPIN + 2, 0.3)] {
         state[at + entry] += value;
@@ -323,7 +323,7 @@ fn a_free_bending_shaft_keeps_momentum_and_energy() {
 /// Momenta of all bodies and, of bending, Ω g·a e₂ + Ω g·b e₃ and the whirl about the axis.
 fn with_bending(assembly: &Assembly, state: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
     let (momentum, mut angular) = momenta(assembly.clone(), state);
-    let mut system = System::new(assembly.clone(), Driver::Plain);
+    let mut system = System::new(assembly.clone(), Kernel::Scalar);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, state, &mut rates);
     let (shaft, body) = (&assembly.shafts[0], &system.bodies[0]);
@@ -410,7 +410,7 @@ fn internal_damping_feeds_the_whirl_above_the_critical_speed() {
         on_springs(&mut assembly, &[0.0, 0.4], [1e7, 1e9, 1e9]);
         assembly.shafts[0].internal_damping = 3000.0;
         let mut state = start::nominal(&assembly);
-        let at = bearing_dynamics::solver::dynamics::state::Places::of(&assembly).body(0);
+        let at = bearing_dynamics::assembly::state::Places::of(&assembly).body(0);
         state[at + VELOCITY + 1] = 1e-3;
         let options = fixed_step(1e-6, Start::Nominal);
         let mut simulation = Simulation::from_state(assembly, options, state, 0.0).unwrap();
@@ -465,11 +465,11 @@ fn stretching_is_damped_inside_and_outside() {
         internal_damping: inside,
         ..ElasticShaft::default()
     };
-    let body = race::fixed(&[0.0; 5]);
+    let body = rigid_body::fixed(&[0.0; 5]);
     let mut rates = [0.0; 2];
     let steps = ShaftSteps { loads: false, damping: true };
     let entries = [gone, speed];
-    let mut ran = Tally::default();
+    let mut ran = Counts::default();
     let done = shaft.rates(steps, 0.0, Some(0.0), (&body, &entries), &mut rates, &mut ran);
     let pushed = -frequency * frequency * gone - (outside + inside) * speed;
     // Rounding.

@@ -2,20 +2,20 @@
 
 use crate::bent_shafts::{STEEL, on_bearings, section};
 use crate::dynamics::*;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::loads::Drive;
+use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::equilibrium::initial::at_start;
+use bearing_dynamics::equilibrium::statics::StaticsError;
 use bearing_dynamics::kinematics::vec3::dot;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::equilibrium::at_start;
-use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::race::RaceNow;
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::shaft::{ShaftLoad, Unbalance};
-use bearing_dynamics::solver::dynamics::start::at_equilibrium;
-use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::StaticsError;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::flexible_shaft::{ShaftLoad, Unbalance};
+use bearing_dynamics::members::rigid_body::BodyKinematics;
+use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::motion::start::at_equilibrium;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 
 /// Loaded askew and along the axis, by its weight too; the shaft stands still, or turns.
 fn askew(speed: f64) -> Assembly {
@@ -48,14 +48,14 @@ fn a_bent_start_is_an_equilibrium() {
         let equilibrium = at_start(&assembly).unwrap();
         let still = Assembly::clone(&assembly);
         let mut state = at_equilibrium(&assembly).unwrap();
-        let mut system = System::new(still, Driver::Lanes);
+        let mut system = System::new(still, Kernel::Simd);
         let mut rates = vec![0.0; state.len()];
         // Nothing but its spin moves: a tilting axis is pushed by gyroscopic moments.
         let (shaft, at) = (&assembly.shafts[0], system.shafts[0]);
         let (count, body) = (shaft.amplitudes(), system.places.body(0));
         state[at + count..at + 2 * count].fill(0.0);
         state[body + VELOCITY..body + VELOCITY + 3].fill(0.0);
-        let now = RaceNow::new(system.body_state(&state, 0)).motion;
+        let now = BodyKinematics::new(system.body_state(&state, 0)).motion;
         for (i, axis) in now.axis.iter().enumerate() {
             state[body + SPIN + i] = dot(now.spin, now.axis) * axis;
         }

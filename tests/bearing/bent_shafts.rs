@@ -4,18 +4,16 @@ use crate::common;
 use crate::dynamics;
 use crate::shafts;
 
+use bearing_dynamics::assembly::lists::{Assembly, GROUND, Mobility};
+use bearing_dynamics::assembly::loads::{DrivenBody, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, GROUND, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::dynamics::model::{RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, Section, ShaftLoad, Unbalance};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
-use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
+use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::flexible_shaft::{ElasticShaft, Section, ShaftLoad, Unbalance};
+use bearing_dynamics::members::shaft_modes::{Kept, free_shaft};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
 use common::table_4_1;
 use dynamics::*;
 use shafts::{body, seated};
@@ -43,7 +41,7 @@ pub fn alone(beam: &Beam, kept: Kept, holds: &[f64], speed: f64) -> Assembly {
     let (rigid, shapes) = free_shaft(beam, kept, &holds, &[]).unwrap();
     let inertia = Inertia { mass: rigid.mass, axial: rigid.axial, transverse: rigid.transverse };
     let spinning = race([0.0; 5], Rotation::Speed(Profile::Constant(speed)));
-    let spinning = RaceBody { inertia, ..spinning };
+    let spinning = DrivenBody { inertia, ..spinning };
     Assembly {
         bodies: vec![
             body(

@@ -1,6 +1,6 @@
 //! When a run's steps end: every row and corner is met, once and to the bit, by as few steps as there can be.
 
-use bearing_dynamics::solver::clock::{Clock, Stop, given_steps};
+use bearing_dynamics::numeric::clock::{Clock, Stop, given_steps};
 
 /// All steps of a clock with the time after each, where the control wants the same step all along.
 fn all_stops(clock: &mut Clock, wanted: f64) -> Vec<(f64, Stop)> {

@@ -4,26 +4,26 @@ use crate::connections::{SPRING, kinds, pair, spring};
 use crate::dynamics;
 use crate::shafts;
 
+use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{POSITION, Places, SPIN, VELOCITY};
+use bearing_dynamics::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBody};
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
-use bearing_dynamics::kinematics::Pose;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::equilibrium::at_start;
-use bearing_dynamics::solver::dynamics::held::check_held;
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::race::mounted;
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::stability::step_limit;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{POSITION, Places, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticBody};
-use bearing_dynamics::solver::statics::{
+use bearing_dynamics::equilibrium::initial::at_start;
+use bearing_dynamics::equilibrium::statics::{
     Condition, Determinacy, StaticOptions, StaticsError, solve_assembly,
 };
+use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::rigid_body::kinematics_at_mount;
+use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::motion::stability::step_limit;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::motion::unconstrained_axes::check_unconstrained_axes;
+use bearing_dynamics::numeric::profile::Profile;
 use dynamics::*;
 use nalgebra::Vector3;
 
@@ -34,7 +34,7 @@ fn body(name: &str, mobility: Mobility) -> Body {
 pub fn free(name: &str) -> Body {
     let inertia = hollow_cylinder(5e-3, 20e-3, 60e-3, 7850.0);
     let rotation = Rotation::Torque(Profile::ZERO);
-    body(name, Mobility::Driven(RaceBody { inertia, ..race([0.0; 5], rotation) }.into()))
+    body(name, Mobility::Driven(DrivenBody { inertia, ..race([0.0; 5], rotation) }.into()))
 }
 
 /// Two free bodies on a spring: momentum to rounding, and what is lost is booked.
@@ -115,23 +115,25 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     let found = solve_assembly(&statics, None, &StaticOptions::default()).unwrap();
     let mut moved = free("body");
     let race = moved.driven_mut().unwrap();
-    *race =
-        RaceBody { inertia: race.inertia, ..dynamics::race(loads, Rotation::Speed(Profile::ZERO)) };
+    *race = DrivenBody {
+        inertia: race.inertia,
+        ..dynamics::race(loads, Rotation::Speed(Profile::ZERO))
+    };
     let assembly = Assembly {
         bodies: vec![moved, body("ground", Mobility::Fixed)],
         connections: vec![connection],
         ..Assembly::default()
     };
     let state = start::at_equilibrium(&assembly).unwrap();
-    let at = bearing_dynamics::solver::dynamics::race::fixed(&found.coordinates[0].into());
+    let at = bearing_dynamics::members::rigid_body::fixed(&found.coordinates[0].into());
     assert_eq!(state[..13], at.state.to_array());
     // Without its spring nothing holds it.
     let mut loose = assembly.clone();
     loose.connections.clear();
     let error = start::at_equilibrium(&loose).unwrap_err();
     assert!(matches!(error, StaticsError::NoEquilibrium { .. }), "{error}");
-    assert!(check_held(&assembly).is_ok());
-    assert!(matches!(check_held(&loose), Err(StaticsError::Unheld { .. })));
+    assert!(check_unconstrained_axes(&assembly).is_ok());
+    assert!(matches!(check_unconstrained_axes(&loose), Err(StaticsError::Unheld { .. })));
     // A spring holds along its own axes, whatever it does along others.
     for axis in 0..3 {
         let mut alone = assembly.clone();
@@ -142,17 +144,20 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
             alone.bodies[0].driven_mut().unwrap().drives[i] = Drive::Load(Profile::Constant(load));
         };
         (0..3).filter(|i| *i != axis).for_each(|i| push(&mut alone, i, 0.0));
-        assert!(check_held(&alone).is_ok(), "{axis}");
+        assert!(check_unconstrained_axes(&alone).is_ok(), "{axis}");
         push(&mut alone, across, 1.0);
-        assert!(matches!(check_held(&alone), Err(StaticsError::Unheld { .. })), "{axis}");
+        assert!(
+            matches!(check_unconstrained_axes(&alone), Err(StaticsError::Unheld { .. })),
+            "{axis}"
+        );
     }
-    let mut system = System::new(assembly.clone(), Driver::Lanes);
+    let mut system = System::new(assembly.clone(), Kernel::Simd);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, &state, &mut rates);
     let inertia = assembly.bodies[0].inertia().unwrap();
     // Statics turns by Euler angles without spin (2.16), a motion without speed about its own axis: a moment about
     // the axis works on the tilt about Y by the sine of the other one.
-    let section = mounted(&system.bodies[0], &assembly.connections[0].ends[1]);
+    let section = kinematics_at_mount(&system.bodies[0], &assembly.connections[0].ends[1]);
     let pull = assembly.connections[0].pull([&system.bodies[1], &section], &[]);
     let about_axis = Vector3::from(pull.on[1].moment).dot(&Vector3::from(section.motion.axis));
     let allowed = 1e-9 + (about_axis * found.coordinates[0][4]).abs();
@@ -173,7 +178,7 @@ fn a_stiff_connection_binds_the_step_by_name() {
     {
         let assembly = on_two_bodies(connection.clone(), spring);
         let state = start::nominal(&assembly);
-        let mut system = System::new(assembly.clone(), Driver::Lanes);
+        let mut system = System::new(assembly.clone(), Kernel::Simd);
         let limit = step_limit(&mut system, 0.0, &state).unwrap();
         assert!(limit.reason().starts_with(expected), "{}", limit.reason());
         // Nothing was taken out for good.

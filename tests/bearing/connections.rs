@@ -3,12 +3,12 @@
 
 use crate::dynamics;
 
-use bearing_dynamics::solver::dynamics::connection::{
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::BodyState;
+use bearing_dynamics::members::connection::{
     Connection, Law, MaxwellElement, SpringDashpot, Torsion,
 };
-use bearing_dynamics::solver::dynamics::race::{RaceNow, mounted};
-use bearing_dynamics::solver::dynamics::state::BodyState;
-use bearing_dynamics::solver::mount::Mount;
+use bearing_dynamics::members::rigid_body::{BodyKinematics, kinematics_at_mount};
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -48,10 +48,10 @@ pub fn spring() -> Connection {
 }
 
 /// Two bodies in any motion, turned by about `turn` rad.
-pub fn pair(seed: u64, turn: f64) -> [RaceNow; 2] {
+pub fn pair(seed: u64, turn: f64) -> [BodyKinematics; 2] {
     let mut noise = Noise(seed);
     [(); 2].map(|()| {
-        RaceNow::new(BodyState {
+        BodyKinematics::new(BodyState {
             position: noise.vector(2e-3),
             orientation: noise.turn(turn),
             velocity: noise.vector(0.5),
@@ -60,12 +60,12 @@ pub fn pair(seed: u64, turn: f64) -> [RaceNow; 2] {
     })
 }
 
-fn ends(connection: &Connection, bodies: &[RaceNow; 2]) -> [RaceNow; 2] {
-    connection.ends.map(|mount| mounted(&bodies[mount.body], &mount))
+fn ends(connection: &Connection, bodies: &[BodyKinematics; 2]) -> [BodyKinematics; 2] {
+    connection.ends.map(|mount| kinematics_at_mount(&bodies[mount.body], &mount))
 }
 
 /// Elongations of its Maxwell elements, some tenths of a millimetre, a `time` after `bodies`.
-fn elongated(connection: &Connection, bodies: &[RaceNow; 2], time: f64) -> Vec<f64> {
+fn elongated(connection: &Connection, bodies: &[BodyKinematics; 2], time: f64) -> Vec<f64> {
     let ends = ends(connection, bodies);
     let rates = connection.pull([&ends[0], &ends[1]], &[]).rates;
     let elements = connection.maxwell().iter().enumerate();
@@ -80,13 +80,16 @@ fn elongated(connection: &Connection, bodies: &[RaceNow; 2], time: f64) -> Vec<f
 }
 
 /// Loads about the centres of the bodies, energy and loss.
-fn pull(connection: &Connection, bodies: &[RaceNow; 2]) -> ([[Vector3<f64>; 2]; 2], f64, f64) {
+fn pull(
+    connection: &Connection,
+    bodies: &[BodyKinematics; 2],
+) -> ([[Vector3<f64>; 2]; 2], f64, f64) {
     pull_at(connection, bodies, &elongated(connection, bodies, 0.0))
 }
 
 fn pull_at(
     connection: &Connection,
-    bodies: &[RaceNow; 2],
+    bodies: &[BodyKinematics; 2],
     elongated: &[f64],
 ) -> ([[Vector3<f64>; 2]; 2], f64, f64) {
     let ends = ends(connection, bodies);
@@ -101,13 +104,13 @@ fn pull_at(
 }
 
 /// Bodies as they are after going on for a time at their velocities.
-fn after(bodies: &[RaceNow; 2], time: f64) -> [RaceNow; 2] {
+fn after(bodies: &[BodyKinematics; 2], time: f64) -> [BodyKinematics; 2] {
     bodies.map(|body| {
         let mut state = body.state;
         let by = |v: [f64; 3]| Vector3::from(v) * time;
         state.position = (Vector3::from(state.position) + by(state.velocity)).into();
         state.orientation = UnitQuaternion::from_scaled_axis(by(state.spin)) * state.orientation;
-        RaceNow::new(state)
+        BodyKinematics::new(state)
     })
 }
 
@@ -169,7 +172,7 @@ fn all_turned_and_moved_alike_loads_turn_with_it() {
             let moved = bodies.map(|body| {
                 let state = body.state;
                 let rotate = |v: [f64; 3]| -> [f64; 3] { (turn * Vector3::from(v)).into() };
-                RaceNow::new(BodyState {
+                BodyKinematics::new(BodyState {
                     position: (turn * Vector3::from(state.position) + shift).into(),
                     orientation: turn * state.orientation,
                     velocity: rotate(state.velocity),
@@ -205,7 +208,7 @@ fn rows_are_the_slopes_of_loads() {
         }
         // The second end is put in the other way round: half a turn about Z between the two.
         connection.ends[1].reversed = false;
-        let bodies = bodies.map(|body| RaceNow::new(body.state));
+        let bodies = bodies.map(|body| BodyKinematics::new(body.state));
         let at = ends(&connection, &bodies);
         let rows = connection.rows([&at[0], &at[1]]);
         for moved in 0..2 {
@@ -226,23 +229,23 @@ fn rows_are_the_slopes_of_loads() {
                             (true, 0..3) => state.velocity[direction] += by,
                             (true, _) => state.spin[direction - 3] += by,
                         }
-                        pull_at(&connection, &all.map(|body| RaceNow::new(body.state)), &[]).0
+                        pull_at(&connection, &all.map(|body| BodyKinematics::new(body.state)), &[])
+                            .0
                     };
                     let (high, low) = (load(step), load(-step));
                     for end in 0..2 {
                         for part in 0..6 {
                             let of = |of: &[[Vector3<f64>; 2]; 2]| of[end][part / 3][part % 3];
                             let slope = (of(&high) - of(&low)) / (2.0 * step);
-                            let lever =
-                                |row: &bearing_dynamics::solver::dynamics::connection::Row,
-                                 end: usize,
-                                 part: usize| {
-                                    let arm = Vector3::from(at[end].motion.position)
-                                        - Vector3::from(bodies[end].motion.position);
-                                    let [linear, turning] = row.on[end].map(Vector3::from);
-                                    let turning = turning + arm.cross(&linear);
-                                    if part < 3 { linear[part] } else { turning[part - 3] }
-                                };
+                            let lever = |row: &bearing_dynamics::members::connection::Row,
+                                         end: usize,
+                                         part: usize| {
+                                let arm = Vector3::from(at[end].motion.position)
+                                    - Vector3::from(bodies[end].motion.position);
+                                let [linear, turning] = row.on[end].map(Vector3::from);
+                                let turning = turning + arm.cross(&linear);
+                                if part < 3 { linear[part] } else { turning[part - 3] }
+                            };
                             let expected: f64 = rows
                                 .iter()
                                 .map(|row| {
@@ -274,11 +277,11 @@ fn a_shaft_that_spins_on_turning_springs_feels_its_tilt_alone() {
     let connection =
         Connection { name: "bed".into(), label: None, ends, law: Law::SpringDashpot(law) };
     let tilt = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.03, -0.02));
-    let ground = RaceNow::new(BodyState {
+    let ground = BodyKinematics::new(BodyState {
         orientation: UnitQuaternion::identity(),
         ..pair(1, 0.0)[0].state
     });
-    let ground = RaceNow::new(BodyState {
+    let ground = BodyKinematics::new(BodyState {
         position: [0.0; 3],
         velocity: [0.0; 3],
         spin: [0.0; 3],
@@ -288,7 +291,7 @@ fn a_shaft_that_spins_on_turning_springs_feels_its_tilt_alone() {
         let spun = tilt * UnitQuaternion::from_scaled_axis(Vector3::x() * angle);
         let spin = (spun * Vector3::x() * 600.0).into();
         let state = BodyState { orientation: spun, spin, ..ground.state };
-        let (on, energy, loss) = pull(&connection, &[ground, RaceNow::new(state)]);
+        let (on, energy, loss) = pull(&connection, &[ground, BodyKinematics::new(state)]);
         (on[1][1], energy, loss)
     };
     let (still, energy, _) = moment(0.0);

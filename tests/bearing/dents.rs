@@ -3,20 +3,22 @@
 
 use super::dynamics_integrators::{motion, started};
 use crate::dynamics::{self, RPM, free_race};
+use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::assembly::state::{POSITION, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, Material};
 use bearing_dynamics::ch2_housing::bearing::hertz::{
     HertzContact, HertzModel, RaceSide, contact, contact_ellipse,
 };
 use bearing_dynamics::ch3_bushing::dent::{Dent, DentShape, DentTable, dented_load};
 use bearing_dynamics::kinematics::vec3::{add, cross, norm, scale};
-use bearing_dynamics::solver::dent_table::{Bed, DentedContact, Fineness, dent_table, usual_table};
-use bearing_dynamics::solver::dynamics::contacts::{ContactTable, Driver, Want};
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{Integrator, Stepping};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{POSITION, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::half_space::{Grid, Influence, love, press};
+use bearing_dynamics::members::contacts::{ContactTable, Kernel, Want};
+use bearing_dynamics::members::dent_table::{
+    Bed, DentedContact, Fineness, dent_table, usual_table,
+};
+use bearing_dynamics::members::half_space::{Grid, Influence, love, press};
+use bearing_dynamics::motion::simulation::{Integrator, Stepping};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
 use std::sync::OnceLock;
 
 fn table_3_5() -> BearingGeometry {
@@ -284,7 +286,7 @@ fn dented(dents: Vec<Dent>) -> DynamicProblem {
 fn a_dent_makes_no_momentum() {
     let mut problem = dented(vec![dent(1, 0.004), dent(0, -0.003), dent(1, 0.79)]);
     (problem.inner, problem.outer) = (free_race(), Some(free_race()));
-    for driver in [Driver::Plain, Driver::Lanes] {
+    for driver in [Kernel::Scalar, Kernel::Simd] {
         let mut system = System::new(&problem, driver);
         let state = start_of(&problem);
         let mut rates = vec![0.0; state.len()];
@@ -332,7 +334,7 @@ fn press_ball(system: &mut System, [around, in_groove]: [f64; 2], overlap: f64) 
 fn arcs_and_stiffness_over_a_dent() {
     let (high, low) = ([0.2, 0.6], [1.0, 0.0]);
     let at = |[angle, groove_angle]: [f64; 2]| Dent { groove_angle, ..dent(1, angle) };
-    let mut system = System::new(dented(vec![at(high), at(low)]), Driver::Lanes);
+    let mut system = System::new(dented(vec![at(high), at(low)]), Kernel::Simd);
     let pair = system.sets[0].layout.padded;
     let outer = table_3_5().outer;
     let radius = outer.centre_radius + outer.groove_radius * libm::cos(high[1]);

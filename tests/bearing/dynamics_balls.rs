@@ -5,20 +5,20 @@ use crate::common;
 use crate::dynamics;
 mod random_scenes;
 
+use bearing_dynamics::assembly::lists::BallMeeting;
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
+use bearing_dynamics::assembly::state::{Layout, Ledger, POSITION};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{ball_contact, peak_pressure};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::slices::Motion;
-use bearing_dynamics::solver::dynamics::assembly::BallMeeting;
-use bearing_dynamics::solver::dynamics::bounds::HERTZ_SCALE;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::dynamics::stability::{Cause, step_limit};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, POSITION};
-use bearing_dynamics::solver::dynamics::step_watch::stiffness;
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::motion::stability::{Cause, step_limit};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::step_watch::stiffness;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::motion::validity::HERTZ_SCALE;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{full_complement, table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
@@ -243,7 +243,7 @@ fn the_step_limit_knows_the_contact_between_balls() {
     for friction in [0.0, law.friction] {
         problem.ball_contact.as_mut().unwrap().friction = friction;
         let state = pressed(&problem);
-        let mut system = System::new(problem.clone(), Driver::Lanes);
+        let mut system = System::new(problem.clone(), Kernel::Simd);
         let limit = step_limit(&mut system, 0.0, &state).unwrap();
         println!("{}: {} s", limit.reason(), limit.step);
         system.evaluate(0.0, &state, &mut vec![0.0; state.len()]);
@@ -272,13 +272,13 @@ fn a_groove_does_not_close_over_its_ball() {
     let layout = Layout::new(8, false);
     let mut state = start::nominal(&problem.assembly());
     state[layout.inner() + POSITION + 1] = -0.4e-3;
-    let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
+    let (system, ..) = evaluated(&problem, Kernel::Scalar, 0.0, &state);
     let contact = system.sets[0].table.contact[0];
     assert!(contact.overlap < 0.0, "{contact:?}");
     // Walls go on straight: an axial offset of the ball meets them at the groove's half width.
     let room = problem.geometry.inner.groove_radius - problem.geometry.ball_radius;
     state[layout.ball(POSITION)] = room + 1e-6;
-    let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
+    let (system, ..) = evaluated(&problem, Kernel::Scalar, 0.0, &state);
     let contact = system.sets[0].table.contact[0];
     assert!((contact.overlap - 1e-6).abs() <= 1e-15, "{contact:?}");
     assert_eq!(contact.normal, [1.0, 0.0, 0.0]);

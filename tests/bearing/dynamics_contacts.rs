@@ -4,15 +4,15 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, LEDGER, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::{ContactDamping, normal_load};
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::contacts::{Driver, Want};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::solver::dynamics::state::{BodyState, LEDGER, Ledger, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{full_complement, table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
@@ -102,7 +102,7 @@ proptest! {
     fn forces_and_moments_inside_the_bearing_cancel(choice in any_choice(), seed: u64) {
         let problem = choice.problem();
         let state = random_state(&problem, seed);
-        for driver in [Driver::Plain, Driver::Lanes] {
+        for driver in [Kernel::Scalar, Kernel::Simd] {
             let (system, rates) = evaluated(&problem, driver, 0.0, &state);
             let (force, moment) = load_sums(&problem, &state, &rates);
             let scale = force_scale(&system);
@@ -125,11 +125,11 @@ proptest! {
         problem.gravity = GRAVITY;
         let state = random_state(&problem, seed);
         let turn = Noise(seed ^ 1).turn(1.7);
-        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (system, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
         let there = moved(&problem, &state, &turn, &Vector3::from(by));
         let mut other = problem.clone();
         other.gravity = (turn * Vector3::from(GRAVITY)).into();
-        let (_, other_rates) = evaluated(&other, Driver::Lanes, 0.0, &there);
+        let (_, other_rates) = evaluated(&other, Kernel::Simd, 0.0, &there);
         let layout = system.sets[0].layout;
         // Rounding of a position at 1 m is 1e-16 m; the stiffest contact, 1e8 N/m, makes 2e-8 N of
         // it, and the slips of 1 m/s change by 1e-16.
@@ -158,7 +158,7 @@ proptest! {
         drives.apply(&mut problem);
         problem.points_across = 1 + (seed % 3) as usize;
         let t = 0.013;
-        let mut system = System::new(problem.clone(), Driver::Lanes);
+        let mut system = System::new(problem.clone(), Kernel::Simd);
         let mut state = random_state(&problem, seed);
         system.tidy(t, &mut state);
         let mut rates = vec![0.0; state.len()];
@@ -199,7 +199,7 @@ proptest! {
         whole.unbalance = 0.0;
         let state = random_state(&whole, seed);
         let t = 0.013;
-        let (system, rates) = evaluated(&whole, Driver::Lanes, t, &state);
+        let (system, rates) = evaluated(&whole, Kernel::Simd, t, &state);
         let booked = &rates[system.sets[0].layout.ledger()..][..LEDGER];
         let scale = force_scale(&system);
         let mut before = whole.clone();
@@ -248,7 +248,7 @@ proptest! {
     fn traction_and_friction_only_take_energy(choice in any_choice(), seed: u64) {
         let problem = choice.problem();
         let state = random_state(&problem, seed);
-        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (system, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
         let at = system.sets[0].layout.ledger();
         // Traction, damping, cage friction, foundation: none may drive.
         for entry in 0..4 {
@@ -275,13 +275,13 @@ proptest! {
             all.extend(table.active.iter().flat_map(|pair| table.slope[*pair]));
             all
         };
-        prop_assert_eq!(bits(&of(Driver::Plain)), bits(&of(Driver::Lanes)));
+        prop_assert_eq!(bits(&of(Kernel::Scalar)), bits(&of(Kernel::Simd)));
     }
 }
 
 /// How fast the kinetic energy of all moving bodies grows, W: forces on velocities, moments on spins.
 fn kinetic_power(problem: &DynamicProblem, t: f64, state: &[f64]) -> f64 {
-    let (_, rates) = evaluated(problem, Driver::Lanes, t, state);
+    let (_, rates) = evaluated(problem, Kernel::Simd, t, state);
     let of_body = |(inertia, at): (Inertia, BodyAt)| {
         let (all, rate) = (entries(state, at), entries(&rates, at));
         let axis = Vector3::from(BodyState::from_slice(&all).axis());

@@ -4,23 +4,23 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
+use bearing_dynamics::assembly::state::{
+    BODY, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
+};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::control::{Attempt, SHARE};
-use bearing_dynamics::solver::dynamics::dormand_prince as dopri;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::dynamics::orbit_frame::OrbitFrames;
-use bearing_dynamics::solver::dynamics::rosenbrock as ros;
-use bearing_dynamics::solver::dynamics::run::{
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::dormand_prince as dopri;
+use bearing_dynamics::motion::error_control::{Attempt, SHARE};
+use bearing_dynamics::motion::orbit_frame::OrbitFrames;
+use bearing_dynamics::motion::rosenbrock as ros;
+use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{
-    BODY, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
-};
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::numeric::profile::Profile;
 use common::table_4_1;
 use dynamics::{
     CONSTANT, GRAVITY, Noise, RPM, bearing, bits, cage, inner_state, ledger, traction_laws,
@@ -313,7 +313,7 @@ fn drivers_give_the_same_bits_and_rejected_steps_leave_no_trace() {
         }
         simulation
     };
-    let (plain, lanes) = (run(Driver::Plain), run(Driver::Lanes));
+    let (plain, lanes) = (run(Kernel::Scalar), run(Kernel::Simd));
     assert!(lanes.system.work.rejected_steps > 0);
     assert_eq!(bits(&plain.state), bits(&lanes.state));
     assert_eq!(plain.system.work, lanes.system.work);

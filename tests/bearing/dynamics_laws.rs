@@ -3,23 +3,23 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
+use bearing_dynamics::assembly::state::{
+    BODY, BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY,
+};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::equilibrium::statics::solve;
 use bearing_dynamics::kinematics::euler::about;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::solver::dynamics::race::tilts_of;
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::stability::growth;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{
-    BODY, BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY,
-};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::solve;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::rigid_body::tilts_of;
+use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::motion::stability::growth;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::{Complex, Matrix3, Vector3};
@@ -83,7 +83,7 @@ fn an_unbalance_is_a_mass_on_the_race() {
         state[at..at + BODY].copy_from_slice(&inner.to_array());
         let force = [0.0, 2e-4].map(|unbalance| {
             problem.unbalance = unbalance;
-            let (_, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+            let (_, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
             Vector3::from_column_slice(&rates[at + VELOCITY..at + VELOCITY + 3])
                 * problem.inner.inertia.mass
         });

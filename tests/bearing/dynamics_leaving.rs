@@ -4,17 +4,17 @@
 use super::dynamics_balls::options;
 use crate::common;
 use crate::dynamics;
+use bearing_dynamics::assembly::lists::gap_in_pockets;
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
+use bearing_dynamics::assembly::state::{BodyState, Layout, POSITION};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
-use bearing_dynamics::solver::dynamics::assembly::gap_in_pockets;
-use bearing_dynamics::solver::dynamics::bounds::{FARTHEST, HERTZ_SCALE, cage_room, race_limit};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::{
+use bearing_dynamics::equilibrium::statics::StaticsError;
+use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, POSITION};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::StaticsError;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::validity::{FARTHEST, HERTZ_SCALE, cage_room, race_limit};
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};

@@ -4,15 +4,15 @@ use super::dynamics_integrators::{fast, gentle, motion, rolling};
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
+use bearing_dynamics::assembly::state::Ledger;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::dynamics::state::Ledger;
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::table_4_1;
 use dynamics::{bearing, cage, evaluated, free_race, ledger, random_state};
 
@@ -70,7 +70,7 @@ fn everything() -> (DynamicProblem, Vec<f64>) {
         Some(RotatingLoad { force: turning.clone(), speed: turning, phase: 0.4 });
     problem.unbalance = 1e-4;
     let mut state = random_state(&problem, 17);
-    System::new(problem.clone(), Driver::Lanes).tidy(0.0, &mut state);
+    System::new(problem.clone(), Kernel::Simd).tidy(0.0, &mut state);
     (problem, state)
 }
 
@@ -86,8 +86,7 @@ fn booked_and_summed(
         RunOptions { integrator, stepping, energy_limit: f64::INFINITY, ..RunOptions::default() };
     let mut simulation = Simulation::from_state(problem.clone(), options, state, 0.0).unwrap();
     let powers = |simulation: &Simulation| {
-        let (system, rates) =
-            evaluated(&problem, Driver::Lanes, simulation.time, &simulation.state);
+        let (system, rates) = evaluated(&problem, Kernel::Simd, simulation.time, &simulation.state);
         ENTRIES.map(|entry| rates[system.sets[0].layout.ledger_entry(entry)])
     };
     let (mut sums, mut sizes) = ([0.0; 5], [0.0; 5]);

@@ -12,19 +12,17 @@ use crate::dynamics;
 mod entries;
 mod point;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot, scale};
-use bearing_dynamics::solver::dynamics::arrow::Arrow;
-use bearing_dynamics::solver::dynamics::contacts::{Driver, Want};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{
-    BodyState, Layout, ORIENTATION, POSITION, SPIN, VELOCITY,
-};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::table_5_3;
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -209,7 +207,7 @@ fn all_moved_alike_nothing_changes() {
         r[layout.inner() + POSITION + i] = by[i];
         r[layout.outer() + POSITION + i] = by[i];
     }
-    let mut arrow = Arrow::new(&point.system, &point.linearised);
+    let mut arrow = BlockArrowMatrix::new(&point.system, &point.linearised);
     arrow.factor(&point.linearised, 1e-6);
     let mut w = vec![0.0; layout.len()];
     let drift = vec![0.0; layout.len()];
@@ -271,7 +269,7 @@ fn caged(
     let mut turn = 0.0;
     let mut rates = vec![0.0; layout.len()];
     for _ in 0..5 {
-        let mut system = System::new(problem.clone(), Driver::Lanes);
+        let mut system = System::new(problem.clone(), Kernel::Simd);
         system.evaluate(0.0, &state, &mut rates);
         let deepest =
             system.sets[0].pockets.iter().map(|pocket| pocket.penetration).fold(-1.0, f64::max);

@@ -3,20 +3,18 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::race::tilts_of;
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::stability::step_limit;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{
-    BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY,
-};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::rigid_body::tilts_of;
+use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::motion::stability::step_limit;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -199,7 +197,7 @@ fn making_and_breaking_contact_costs_order() {
 fn frictionless_energy_drifts_by_the_order_of_the_step() {
     let problem = smooth();
     let state = smooth_start(&problem);
-    let mut system = System::new(problem.clone(), Driver::Lanes);
+    let mut system = System::new(problem.clone(), Kernel::Simd);
     let pulsation = step_limit(&mut system, 0.0, &state).unwrap().eigenvalue.norm();
     let time = 300.0 / pulsation;
     let drifts = [0.2, 0.1, 0.05].map(|angle| {

@@ -4,15 +4,15 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
+use bearing_dynamics::assembly::state::{BODY, Layout, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::solver::dynamics::contacts::{Driver, Work};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, Start};
-use bearing_dynamics::solver::dynamics::state::{BODY, Layout, Ledger, SPIN, VELOCITY};
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::{Kernel, Work};
+use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Start};
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
@@ -247,7 +247,7 @@ fn both_drivers_run_with_the_same_bits() {
             problem.points_across = 1 + law % 3;
             problem.cage = Some(cage(&problem.geometry, Pocket::Cylindrical, Guidance::OuterRace));
             problem.gravity = GRAVITY;
-            let ends = [Driver::Plain, Driver::Lanes].map(|driver| {
+            let ends = [Kernel::Scalar, Kernel::Simd].map(|driver| {
                 let options = RunOptions { driver, ..fixed_step(STEP, Start::Equilibrium) };
                 let mut simulation = Simulation::new(problem.clone(), options).unwrap();
                 run(&mut simulation, 200);

@@ -3,17 +3,17 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, Layout, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::race::tilts_of;
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, POSITION, SPIN, VELOCITY};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::solve;
+use bearing_dynamics::equilibrium::statics::solve;
+use bearing_dynamics::members::rigid_body::tilts_of;
+use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;

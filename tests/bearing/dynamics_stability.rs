@@ -3,13 +3,13 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, Rotation};
+use bearing_dynamics::assembly::state::{Layout, Ledger, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
-use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Start};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, Ledger, VELOCITY};
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::motion::simulation::{RunOptions, Simulation, SimulationError, Start};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;

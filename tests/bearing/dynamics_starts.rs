@@ -4,17 +4,17 @@ use super::dynamics_settling::table_3_5;
 use crate::common;
 use crate::dynamics;
 
-use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
-use bearing_dynamics::solver::dynamics::model::{
-    Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation,
+use bearing_dynamics::assembly::loads::{
+    Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation,
 };
-use bearing_dynamics::solver::dynamics::run::{
+use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
+use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
+use bearing_dynamics::equilibrium::statics::StaticsError;
+use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, SPIN, VELOCITY};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::StaticsError;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::numeric::profile::Profile;
 use common::table_4_1;
 use dynamics::*;
 use nalgebra::Vector3;
@@ -52,7 +52,7 @@ fn unbalanced(problem: &DynamicProblem, rates: &[f64], at: usize, inertia: Inert
 }
 
 /// An outer race on springs, tilted and loaded by itself.
-fn on_springs() -> RaceBody {
+fn on_springs() -> DrivenBody {
     let mut outer = free_race();
     outer.rotation = Rotation::Speed(Profile::ZERO);
     outer.foundation_stiffness = [1e7, 2e7, 1.5e7, 1e4, 2e4];

@@ -3,17 +3,17 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::stability::step_limit;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::motion::stability::step_limit;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
@@ -65,7 +65,7 @@ fn observed_over_predicted(problem: &DynamicProblem) -> f64 {
     let mut settled = simulation(problem, 0.1e-6, Start::Equilibrium);
     run(&mut settled, 10_000);
     let state = settled.state;
-    let mut system = System::new(problem.clone(), Driver::Lanes);
+    let mut system = System::new(problem.clone(), Kernel::Simd);
     let limit = step_limit(&mut system, 0.0, &state).unwrap();
     let (mut low, mut high) = (0.6, 1.7);
     for _ in 0..7 {
@@ -143,7 +143,7 @@ fn the_reason_names_what_binds_the_step() {
         (founded(1e12, 0.0), "spring of the foundation: oscillation"),
     ] {
         let state = start::at_equilibrium(&problem.assembly()).unwrap();
-        let mut system = System::new(problem.clone(), Driver::Lanes);
+        let mut system = System::new(problem.clone(), Kernel::Simd);
         let limit = step_limit(&mut system, 0.0, &state).unwrap();
         println!("{}: {:e} s", limit.reason(), limit.step);
         assert!(limit.reason().starts_with(expected), "{} instead of {expected}", limit.reason());
@@ -165,7 +165,7 @@ fn held(free: impl Fn(&mut DynamicProblem)) -> (DynamicProblem, Vec<f64>) {
 }
 
 fn limit_at(problem: &DynamicProblem, state: &[f64]) -> f64 {
-    let mut system = System::new(problem.clone(), Driver::Lanes);
+    let mut system = System::new(problem.clone(), Kernel::Simd);
     step_limit(&mut system, 0.0, state).unwrap().step
 }
 
@@ -176,7 +176,7 @@ const DECAYS: f64 = 2.785_293_563_405_282;
 fn the_step_limit_of_a_ball_follows_from_the_state_itself() {
     // Contacts so light that a displacement of 1 % of their depth in the Jacobian would show.
     let (problem, state) = held(|_| {});
-    let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
+    let (system, ..) = evaluated(&problem, Kernel::Scalar, 0.0, &state);
     let per_mass = 1.0 / problem.ball.mass;
     let layout = system.sets[0].layout;
     let sum: f64 = [0, 1]
@@ -196,7 +196,7 @@ fn the_step_limit_of_a_ball_follows_from_the_state_itself() {
     let u0 = 1e-4;
     let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: u0 };
     let (problem, state) = held(|problem| problem.traction = law.clone());
-    let (system, ..) = evaluated(&problem, Driver::Plain, 0.0, &state);
+    let (system, ..) = evaluated(&problem, Kernel::Scalar, 0.0, &state);
     let inertia = problem.ball.axial;
     // Slip of each contact is v ± ρ ω: two equations of shift and roll, symmetric in v √m and ω √I.
     let [mut shift, mut both, mut roll] = [0.0; 3];
@@ -264,7 +264,7 @@ fn the_step_limit_of_a_tilting_race_follows_from_the_state_itself() {
         problem.inner.inertia.axial = 1e-9;
     });
     let layout = Layout::new(problem.geometry.ball_count, false);
-    let mut system = System::new(problem.clone(), Driver::Plain);
+    let mut system = System::new(problem.clone(), Kernel::Scalar);
     let mut rates = vec![0.0; state.len()];
     let mut spin_rate = |angle: f64| {
         let mut turned = state.clone();

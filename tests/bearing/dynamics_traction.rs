@@ -5,13 +5,13 @@ use super::dynamics_contacts::force_scale;
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::loads::{DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, Layout, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, Ledger, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::Vector3;
@@ -27,7 +27,7 @@ fn preloaded(law: TractionLaw) -> (DynamicProblem, Layout, Vec<f64>) {
 
 /// Moment on ball 1 about its contact line.
 fn spin_moment(problem: &DynamicProblem, layout: &Layout, state: &[f64]) -> (f64, System) {
-    let (system, rates) = evaluated(problem, Driver::Lanes, 0.0, state);
+    let (system, rates) = evaluated(problem, Kernel::Simd, 0.0, state);
     let normal = Vector3::from(system.sets[0].table.contact[layout.padded].normal);
     let moment = Vector3::from(layout.ball_vector(&rates, SPIN, 0)) * problem.ball.axial;
     (moment.dot(&normal), system)
@@ -80,7 +80,7 @@ fn slices_converge_where_the_whole_contact_slides() {
     let mut loads = |slices: usize, across: usize| {
         problem.slices = slices;
         problem.points_across = across;
-        let (_, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (_, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
         let force = Vector3::from(layout.ball_vector(&rates, VELOCITY, 0)) * problem.ball.mass;
         let moment = Vector3::from(layout.ball_vector(&rates, SPIN, 0)) * problem.ball.axial;
         (force, moment)
@@ -111,7 +111,7 @@ fn heathcote_brakes_a_ball_that_rolls_without_slip_in_the_middle() {
     let state = start::nominal(&problem.assembly());
     let mut braking = |heathcote: bool| {
         problem.heathcote = heathcote;
-        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (system, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
         let power = rates[layout.ledger_entry(Ledger::Traction)];
         (system.sets[0].laws.curvature, power)
     };
@@ -137,7 +137,7 @@ fn slide_to_roll_takes_the_mean_surface_speed_through_the_contact() {
     let mut ball = layout.ball_state(&state, 0);
     let g = problem.geometry;
     let orbit = Vector3::from(ball.velocity).norm() / g.pitch_radius;
-    let (system, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+    let (system, _) = evaluated(&problem, Kernel::Simd, 0.0, &state);
     let overlap = system.sets[0].table.contact[layout.padded].overlap;
     let reach = g.ball_radius - 0.5 * overlap;
     let at_contact = orbit * (g.pitch_radius + reach);
@@ -145,7 +145,7 @@ fn slide_to_roll_takes_the_mean_surface_speed_through_the_contact() {
     let rolling = -orbit * g.pitch_radius / reach;
     ball.spin = [rolling * 1.01, 0.0, 0.0];
     layout.set_ball(&mut state, 0, &ball);
-    let (system, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+    let (system, _) = evaluated(&problem, Kernel::Simd, 0.0, &state);
     let sliding = system.sets[0].table.sliding[layout.padded];
     let slip = 0.01 * rolling * reach;
     // Race and ball pass the contact at these speeds.
@@ -164,7 +164,7 @@ fn slide_to_roll_takes_the_mean_surface_speed_through_the_contact() {
     ball.velocity = [0.0; 3];
     ball.spin = [1.0, 0.0, 0.0];
     layout.set_ball(&mut state, 0, &ball);
-    let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+    let (system, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
     assert!(rates.iter().all(|rate| rate.is_finite()));
     let sliding = system.sets[0].table.sliding[layout.padded];
     assert!((sliding.slip[0].abs() - reach).abs() <= 1e-15 && sliding.entrainment > 0.002);
@@ -199,8 +199,8 @@ fn turning_the_whole_bearing_about_its_axis_changes_no_traction() {
                 BodyAt::At(at) => turning[at..at + 13].copy_from_slice(&body.to_array()),
             }
         }
-        let (still, _) = evaluated(&problem, Driver::Lanes, 0.0, &state);
-        let (orbiting, _) = evaluated(&problem, Driver::Lanes, 0.0, &turning);
+        let (still, _) = evaluated(&problem, Kernel::Simd, 0.0, &state);
+        let (orbiting, _) = evaluated(&problem, Kernel::Simd, 0.0, &turning);
         assert!(!still.sets[0].table.active.is_empty());
         assert_eq!(still.sets[0].table.active, orbiting.sets[0].table.active);
         for &pair in &still.sets[0].table.active {
@@ -220,7 +220,7 @@ fn without_traction_no_ball_spin_changes() {
         let problem = bearing(table_5_3(), [0.0; 5], 0.0);
         let layout = Layout::new(11, false);
         let state = random_state(&problem, seed);
-        let (system, rates) = evaluated(&problem, Driver::Lanes, 0.0, &state);
+        let (system, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
         assert!(!system.sets[0].table.active.is_empty());
         for ball in 0..layout.balls {
             let moment = Vector3::from(layout.ball_vector(&rates, SPIN, ball)) * problem.ball.axial;

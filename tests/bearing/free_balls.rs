@@ -4,7 +4,7 @@
 use crate::common;
 
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough};
-use bearing_dynamics::solver::statics::{Condition, Determinacy, StaticsError, solve};
+use bearing_dynamics::equilibrium::statics::{Condition, Determinacy, StaticsError, solve};
 use common::problem;
 
 /// An angular-contact bearing held askew at 100 rpm, on which a search that starts between the

@@ -5,38 +5,34 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::channels::ChannelGroup;
+use bearing_dynamics::assembly::lists::{Assembly, INNER, OUTER};
+use bearing_dynamics::assembly::loads::{DynamicProblem, RotatingLoad};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::plan::counts::StageCounts;
+use bearing_dynamics::assembly::plan::motion::{Planned, items};
+use bearing_dynamics::assembly::plan::{Item, Stage, Subject, counted, statics};
+use bearing_dynamics::assembly::static_lists::Place;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, INNER, OUTER};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::dynamics::contacts::{Driver, Want};
-use bearing_dynamics::solver::dynamics::model::{DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::dynamics::reduced_solid::{
-    ModalLoad, ReducedSolid, Surface, SurfaceNode,
-};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::seat::Seat;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::plan::motion::{Planned, items};
-use bearing_dynamics::solver::plan::tally::Ran;
-use bearing_dynamics::solver::plan::{Item, Stage, Subject, counted, statics};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::static_assembly::Place;
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::members::housing_fit::Seat;
+use bearing_dynamics::members::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{FREE, problem, table_4_1};
 use dynamics::*;
 use nalgebra::Vector3;
 
 /// Every item ran as often as its cost says, at least once without one, never where it is skipped; nothing ran
 /// without an item.
-fn check(what: &str, plan: &[Item], ran: &Ran) {
+fn check(what: &str, plan: &[Item], ran: &StageCounts) {
     // Of a motion, and of a search for an equilibrium.
     let of = |stage| ran.of(stage, Subject::Whole);
     let evaluations = of(Stage::Ledger) + of(Stage::Evaluation);
@@ -157,7 +153,7 @@ fn an_evaluation_does_what_is_planned_and_nothing_else() {
     for (what, take_out) in WITHOUT {
         let mut assembly = with_ring();
         take_out(&mut assembly);
-        for driver in [Driver::Plain, Driver::Lanes] {
+        for driver in [Kernel::Scalar, Kernel::Simd] {
             let mut system = System::new(assembly.clone(), driver);
             let state = start::nominal(&assembly);
             let mut rates = vec![0.0; state.len()];
@@ -173,7 +169,7 @@ fn an_evaluation_does_what_is_planned_and_nothing_else() {
 #[test]
 fn each_feature_has_its_item() {
     let done = |assembly: Assembly| {
-        let plan = System::new(assembly, Driver::Lanes).plan;
+        let plan = System::new(assembly, Kernel::Simd).plan;
         plan.iter().filter(|item| item.does).count()
     };
     let whole = done(with_ring());

@@ -3,10 +3,10 @@
 use crate::common;
 use crate::dynamics;
 
-use bearing_dynamics::solver::dynamics::model::{
-    Drive, DynamicProblem, RaceBody, RotatingLoad, Rotation,
+use bearing_dynamics::assembly::loads::{
+    Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation,
 };
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::numeric::profile::Profile;
 use common::table_4_1;
 use dynamics::*;
 
@@ -84,7 +84,7 @@ fn every_profile_of_a_problem_has_its_corners_there() {
     let still = || bearing(table_4_1(-5e-6), [0.0; 5], 100.0);
     let mut places: Vec<Put> = Vec::new();
     for is_outer in [false, true] {
-        let body = move |problem: &mut DynamicProblem, change: &dyn Fn(&mut RaceBody)| {
+        let body = move |problem: &mut DynamicProblem, change: &dyn Fn(&mut DrivenBody)| {
             if is_outer {
                 change(problem.outer.get_or_insert_with(free_race));
             } else {

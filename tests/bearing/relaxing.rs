@@ -4,22 +4,18 @@
 use super::dynamics_integrators::rows_of;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{POSITION, Places, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{
-    Connection, Law, MaxwellElement, SpringDashpot,
-};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::stability::{Cause, step_limit};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{POSITION, Places, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::connection::{Connection, Law, MaxwellElement, SpringDashpot};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
+use bearing_dynamics::motion::stability::{Cause, step_limit};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use nalgebra::{DMatrix, DVector};
 
 /// N/m left at last, and (N/m, s) of each element: of everything a bushing has, a bit.
@@ -31,7 +27,8 @@ fn on_rubber(elements: &[(f64, f64)], load: Profile) -> Assembly {
     let mut assembly =
         dynamics::bearing(crate::common::table_4_1(200e-6), [0.0; 5], 0.0).assembly();
     let inertia = hollow_cylinder(10e-3, 35e-3, 42e-3, 7850.0);
-    let mut race = RaceBody { inertia, ..dynamics::race([0.0; 5], Rotation::Speed(Profile::ZERO)) };
+    let mut race =
+        DrivenBody { inertia, ..dynamics::race([0.0; 5], Rotation::Speed(Profile::ZERO)) };
     for (i, drive) in race.drives.iter_mut().enumerate() {
         *drive = if i == 2 { Drive::Load(load.clone()) } else { Drive::Motion(Profile::ZERO) };
     }
@@ -191,7 +188,7 @@ fn the_step_limit_knows_elements_that_have_not_relaxed() {
         let assembly = on_rubber(elements, Profile::ZERO);
         let mass = mass(&assembly);
         let state = start::nominal(&assembly);
-        let mut system = System::new(assembly, Driver::Lanes);
+        let mut system = System::new(assembly, Kernel::Simd);
         (step_limit(&mut system, 0.0, &state).unwrap(), mass)
     };
     let (stiff, mass) = limit(&[(1e12, 10.0)]);

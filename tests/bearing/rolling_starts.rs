@@ -4,15 +4,15 @@ use super::shafts::{on_two, rates};
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::lists::Mobility;
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
-use bearing_dynamics::solver::dynamics::assembly::Mobility;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{POSITION, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::equilibrium::initial::static_assembly;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::table_5_3;
 use dynamics::*;
 use nalgebra::Vector3;
@@ -83,12 +83,12 @@ fn balls_roll_between_two_turning_races_whichever_way_their_bearing_faces() {
         for body in &mut assembly.bodies[1..] {
             let drives = body.rest.map(|at| Drive::Motion(Profile::Constant(at)));
             let turns = race([0.0; 5], Rotation::Speed(Profile::Constant(outer)));
-            let turns = RaceBody { inertia: ring, drives, ..turns };
+            let turns = DrivenBody { inertia: ring, drives, ..turns };
             body.mobility = Mobility::Driven(turns.into());
         }
         let expected = 0.5 * (1.0 - gamma) * inner + 0.5 * (1.0 + gamma) * outer;
         let state = start::nominal(&assembly);
-        let system = System::new(assembly.clone(), Driver::Lanes);
+        let system = System::new(assembly.clone(), Kernel::Simd);
         for set in &system.sets {
             for ball in 0..set.layout.balls {
                 let [_, y, z] = set.layout.ball_vector(&state, POSITION, ball);

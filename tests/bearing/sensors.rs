@@ -3,17 +3,15 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::state::{BODY, BodyState, Layout};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch5_cage::telemeter::Telemeter;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::race::RaceNow;
-use bearing_dynamics::solver::dynamics::run::{Simulation, Start};
-use bearing_dynamics::solver::dynamics::sensor::{
-    Accelerometer, CageTelemeter, Sensor, SensorKind,
-};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout};
-use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::rigid_body::BodyKinematics;
+use bearing_dynamics::members::sensor::{Accelerometer, CageTelemeter, Sensor, SensorKind};
+use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
 use common::table_4_1;
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -44,7 +42,7 @@ fn an_accelerometer_feels_how_its_place_is_accelerated() {
         let direction = body(t).orientation * Vector3::from(sensor.direction);
         let linear = [-0.9 * (30.0 * t).sin(), 4e-3, -1.25 * (50.0 * t).cos()];
         let turning: Vector3<f64> = 50.0 * Vector3::new(0.6, 0.0, 0.8);
-        let felt = sensor.read(&RaceNow::new(body(t)), linear, turning.into());
+        let felt = sensor.read(&BodyKinematics::new(body(t)), linear, turning.into());
         // Differences over 1e-4 s of motions of 50 1/s, and rounding of 0.04 m over 1e-8 s².
         let error = (felt - acceleration.dot(&direction)).abs();
         assert!(error <= 1e-4, "{felt} for {}, {error:e}", acceleration.dot(&direction));
@@ -133,7 +131,7 @@ fn a_telemeter_reads_where_the_cage_is_from_its_outer_race() {
         put(layout.outer(), [2e-4, -1e-4, 3e-4], UnitQuaternion::identity());
         // A quarter turn takes a runout along Y to Z.
         put(layout.cage(), [-1e-4, 2e-4, 1e-4], about([1.0, 0.0, 0.0], 0.5 * PI) * round);
-        let mut system = System::new(assembly, Driver::Lanes);
+        let mut system = System::new(assembly, Kernel::Simd);
         let mut rates = vec![0.0; state.len()];
         system.evaluate(0.0, &state, &mut rates);
         let read = sensor.read(&system, &rates);

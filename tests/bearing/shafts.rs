@@ -3,23 +3,21 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::lists::{Assembly, Bearing, Body, Mobility};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{BodyState, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, Body, Mobility};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::race::{RaceNow, mounted};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BodyState, POSITION, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::equilibrium::initial::{at_start, static_assembly};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::rigid_body::{BodyKinematics, kinematics_at_mount};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -50,8 +48,8 @@ pub fn body(name: &str, mobility: Mobility, rest: [f64; 5]) -> Body {
 }
 
 /// A steel shaft of 30 mm, 120 mm long, under constant loads.
-pub fn shaft(loads: [f64; 5], speed: f64) -> RaceBody {
-    RaceBody {
+pub fn shaft(loads: [f64; 5], speed: f64) -> DrivenBody {
+    DrivenBody {
         inertia: hollow_cylinder(0.0, 15e-3, 120e-3, 7850.0),
         ..race(loads, Rotation::Speed(Profile::Constant(speed)))
     }
@@ -92,7 +90,7 @@ pub fn on_two(loads: [f64; 5], speed: f64) -> Assembly {
 }
 
 pub fn rates(assembly: &Assembly, state: &[f64]) -> (System, Vec<f64>) {
-    let mut system = System::new(assembly.clone(), Driver::Lanes);
+    let mut system = System::new(assembly.clone(), Kernel::Simd);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, state, &mut rates);
     (system, rates)
@@ -184,11 +182,11 @@ fn what_sits_on_a_body_moves_as_that_place_of_it() {
     let at = |t: f64| {
         let position = (place + velocity * t).into();
         let orientation = UnitQuaternion::new(spin * t) * body.orientation;
-        RaceNow::new(BodyState { position, orientation, ..body })
+        BodyKinematics::new(BodyState { position, orientation, ..body })
     };
     for (along, reversed) in [(0.0, true), (40e-3, false), (-30e-3, true)] {
         let mount = Mount { body: 0, along, reversed };
-        let [before, now, after] = [-STEP, 0.0, STEP].map(|t| mounted(&at(t), &mount));
+        let [before, now, after] = [-STEP, 0.0, STEP].map(|t| kinematics_at_mount(&at(t), &mount));
         let [before, there, after] =
             [&before, &now, &after].map(|now| Vector3::from(now.state.position));
         // (ω t)² of some m/s, and rounding of mm over a step.
@@ -207,15 +205,15 @@ fn a_free_shaft_and_its_bearings_keep_momentum_and_energy() {
     let mut assembly = on_two([0.0; 5], 0.0);
     assembly.gravity = [0.0; 3];
     assembly.bodies[0].mobility = Mobility::Driven(
-        RaceBody { rotation: Rotation::Torque(Profile::ZERO), ..shaft([0.0; 5], 0.0) }.into(),
+        DrivenBody { rotation: Rotation::Torque(Profile::ZERO), ..shaft([0.0; 5], 0.0) }.into(),
     );
     let ring = hollow_cylinder(36e-3, 40e-3, 16e-3, 7850.0);
     for index in [1, 2] {
         assembly.bodies[index].mobility =
-            Mobility::Driven(RaceBody { inertia: ring, ..free_race() }.into());
+            Mobility::Driven(DrivenBody { inertia: ring, ..free_race() }.into());
     }
     let mut state = start::nominal(&assembly);
-    let places = bearing_dynamics::solver::dynamics::state::Places::of(&assembly);
+    let places = bearing_dynamics::assembly::state::Places::of(&assembly);
     let at = places.body(0);
     for (entry, value) in [(VELOCITY + 1, 0.02), (VELOCITY, 0.01), (SPIN, 90.0), (SPIN + 2, 0.5)] {
         state[at + entry] += value;

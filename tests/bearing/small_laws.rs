@@ -1,7 +1,7 @@
 //! Laws of single functions of the solver: courses in time, slopes of energies, what a ledger ends.
 
 mod profile {
-    use bearing_dynamics::solver::profile::*;
+    use bearing_dynamics::numeric::profile::*;
 
     #[test]
     fn rates_are_the_derivatives_of_the_values() {
@@ -71,10 +71,10 @@ mod profile {
 }
 
 mod static_seat {
+    use bearing_dynamics::assembly::mount::Mount;
     use bearing_dynamics::kinematics::Pose;
-    use bearing_dynamics::solver::mount::Mount;
-    use bearing_dynamics::solver::race_position::InnerRacePosition;
-    use bearing_dynamics::solver::static_seat::*;
+    use bearing_dynamics::members::race_position::InnerRacePosition;
+    use bearing_dynamics::members::static_housing_fit::*;
     use nalgebra::UnitQuaternion;
     use nalgebra::{SMatrix, Vector3, Vector4, Vector5};
     use std::f64::consts::PI;
@@ -129,9 +129,9 @@ mod static_seat {
 }
 
 mod static_shaft {
-    use bearing_dynamics::solver::dynamics::shaft::Section;
-    use bearing_dynamics::solver::static_assembly::StaticSection;
-    use bearing_dynamics::solver::static_shaft::*;
+    use bearing_dynamics::assembly::static_lists::StaticSection;
+    use bearing_dynamics::members::flexible_shaft::Section;
+    use bearing_dynamics::members::static_shaft::*;
     use nalgebra::Vector5;
 
     fn section() -> StaticSection {
@@ -184,12 +184,12 @@ mod static_shaft {
 }
 
 mod ledger_watch {
-    use bearing_dynamics::solver::ledger_watch::*;
+    use bearing_dynamics::assembly::ledger_watch::*;
 
     /// Rows on end that are seen until a run ends, at most a hundred.
     fn rows_seen(residual: f64, turned_over: f64) -> usize {
         let mut watch = LedgerWatch::default();
-        (0..100).take_while(|_| watch.see(residual, turned_over, 0.2)).count()
+        (0..100).take_while(|_| watch.record(residual, turned_over, 0.2)).count()
     }
 
     /// Looks that are open now and then end no run, those on end do.
@@ -197,8 +197,8 @@ mod ledger_watch {
     fn a_single_blow_ends_no_run() {
         let mut watch = LedgerWatch::default();
         for round in 0..20 {
-            let open = (1..MOST_OPEN).all(|_| watch.see(1.0, 2.0, 0.2));
-            assert!(open && watch.see(0.1, 2.0, 0.2), "{round}");
+            let open = (1..MOST_OPEN).all(|_| watch.record(1.0, 2.0, 0.2));
+            assert!(open && watch.record(0.1, 2.0, 0.2), "{round}");
         }
         assert_eq!((watch.largest_residual, watch.turned_over), (1.0, 2.0));
     }
@@ -215,7 +215,7 @@ mod ledger_watch {
 
 mod tally {
 
-    use bearing_dynamics::solver::plan::Stage;
+    use bearing_dynamics::assembly::plan::Stage;
 
     #[test]
     fn every_stage_has_its_number() {

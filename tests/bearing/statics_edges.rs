@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use bearing_dynamics::solver::statics::{Condition, Determinacy, StaticsError, solve};
+use bearing_dynamics::equilibrium::statics::{Condition, Determinacy, StaticsError, solve};
 use common::{FREE, problem, table_4_1};
 use nalgebra::Vector3;
 

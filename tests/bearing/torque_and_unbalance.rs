@@ -5,14 +5,12 @@ use crate::common::table_4_1;
 use crate::connected_bodies::free;
 use crate::dynamics::{CONSTANT, bearing, fixed_step};
 
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::state::{BodyState, Ledger};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::shaft_shapes::Kept;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, Ledger};
+use bearing_dynamics::members::shaft_modes::Kept;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
 use nalgebra::{Matrix3, Vector3};
 
 /// A free body with this unbalance under a constant torque, N·m.
@@ -24,7 +22,7 @@ fn turned(torque: f64, unbalance: f64) -> Assembly {
     Assembly { bodies: vec![body], ..Assembly::default() }
 }
 
-fn race(assembly: &mut Assembly) -> &mut RaceBody {
+fn race(assembly: &mut Assembly) -> &mut DrivenBody {
     assembly.bodies[0].driven_mut().unwrap()
 }
 

@@ -6,13 +6,13 @@ use crate::connections::kinds;
 use crate::dynamics::{Noise, RPM, bearing};
 use crate::dynamics_integrators::started;
 
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::state::{BODY, BodyState, ORIENTATION, Places, SPIN};
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::connection::Law;
-use bearing_dynamics::solver::dynamics::rosenbrock as ros;
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, ORIENTATION, Places, SPIN};
-use bearing_dynamics::solver::dynamics::turning_frame::TurningFrames;
+use bearing_dynamics::members::connection::Law;
+use bearing_dynamics::motion::rosenbrock as ros;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::motion::turning_frame::TurningFrames;
 use nalgebra::{Matrix2, Quaternion, UnitQuaternion, Vector2, Vector3};
 
 fn quaternion(of: &[f64], at: usize) -> Quaternion<f64> {

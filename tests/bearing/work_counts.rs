@@ -3,8 +3,8 @@
 use crate::common;
 use crate::dynamics;
 
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve, solve_from};
+use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve, solve_from};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
 use common::{FREE, problem, table_4_1, table_5_3};
 use dynamics::{RPM, bearing, traction_laws};
 

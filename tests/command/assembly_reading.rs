@@ -331,7 +331,7 @@ fn what_is_refused_of_a_body_or_a_housing_names_it() {
     for method in ["reduced", "quasi-static"] {
         let method = format!("method = \"{method}\"");
         let loose = housings(&[("method = \"reduced\"", &method)]);
-        let (before, held) = loose.split_once("[[solid.held]]").expect("a support");
+        let (before, held) = loose.split_once("[[solid.fixed]]").expect("a support");
         let after = held.split_once("\n[").expect("a table after it").1;
         let path = write(folder.path(), "loose.toml", &format!("{before}[{after}"));
         for command in ["check", "statics"] {
@@ -340,7 +340,7 @@ fn what_is_refused_of_a_body_or_a_housing_names_it() {
                 arguments.push("--dry");
             }
             let said = refused(&arguments);
-            assert!(said.contains("housing left: ") && said.contains("[[solid.held]]"), "{said}");
+            assert!(said.contains("housing left: ") && said.contains("[[solid.fixed]]"), "{said}");
         }
     }
 }

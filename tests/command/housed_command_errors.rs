@@ -138,7 +138,7 @@ fn cases() -> Vec<Case> {
         (
             "a bore that is held",
             changed("set = \"fixed\"", "set = \"bore\""),
-            &["housing.bore", "held by [[solid.held]]", "Hold another set", "rigid"],
+            &["housing.bore", "held by [[solid.fixed]]", "Hold another set", "rigid"],
         ),
         (
             "an unknown method",
@@ -211,7 +211,7 @@ fn cases() -> Vec<Case> {
         (
             "a support that moves",
             changed("y = true", "y = { ramp = [\"0 um\", \"1 um\"], duration = \"1 ms\" }"),
-            &["scene.toml:38:5: solid.held.y", "held at zero", "explicit"],
+            &["scene.toml:38:5: solid.fixed.y", "held at zero", "explicit"],
         ),
         (
             "a bore wider than its ring",
@@ -226,7 +226,7 @@ fn cases() -> Vec<Case> {
         (
             "a set that is not there",
             changed("set = \"fixed\"", "set = \"foot\""),
-            &["scene.toml:36:7: solid.held.set", "\"foot\"", "bore, fixed"],
+            &["scene.toml:36:7: solid.fixed.set", "\"foot\"", "bore, fixed"],
         ),
         (
             "a set that matches nothing",

@@ -9,10 +9,10 @@ use crate::solid_command_common::{
 use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::mesh::Elements;
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
@@ -30,20 +30,20 @@ cells = { around = 3, radial = 2, axial = 1, grading = 1.5 }
 [solid.material]
 law = "elastomer"
 table = "3.1"
-[[solid.held]]
+[[solid.fixed]]
 set = "outer"
 x = true
 y = true
 z = true
-[[solid.held]]
+[[solid.fixed]]
 set = "inner"
 x = true
 y = true
 z = { ramp = ["0 um", "500 um"], duration = "0.1 s" }
-[[solid.held]]
+[[solid.fixed]]
 set = "x_low"
 x = true
-[[solid.held]]
+[[solid.fixed]]
 set = "y_low"
 y = true
 [[solid.probe]]
@@ -366,7 +366,7 @@ fn what_does_not_fit_rubber_is_refused() {
         ),
         (
             "run",
-            ("[[solid.held]]\nset = \"outer\"\nx = true\ny = true\nz = true\n", numerics.into()),
+            ("[[solid.fixed]]\nset = \"outer\"\nx = true\ny = true\nz = true\n", numerics.into()),
             &["free to move along z"],
         ),
         ("modes", (law, law.into()), &["no natural modes", "[solid.harmonic]"]),

@@ -11,7 +11,7 @@ use std::time::Duration;
 /// A cube of rubber, free at its sides, whose end goes `moved` mm.
 pub fn cube(moved: &str, further: &str) -> String {
     let held = |set: &str, axis: &str, how: &str| {
-        format!("[[solid.held]]\nset = \"{set}\"\n{axis} = {how}\n")
+        format!("[[solid.fixed]]\nset = \"{set}\"\n{axis} = {how}\n")
     };
     format!(
         "[solid.mesh]\ngenerate = \"bar\"\nlength = \"12 mm\"\nwidth = \"12 mm\"\nheight = \"12 mm\"\norder = 2\n\
@@ -64,9 +64,9 @@ fn sleeves_that_let_rubber_slide_are_told() {
              outer_diameter = \"36 mm\"\nlength = \"20 mm\"\norder = 2\n\
              cells = {{ around = 3, radial = 2, axial = 1, grading = 1.5 }}\n\
              [solid.material]\nlaw = \"elastomer\"\ntable = \"3.1\"\n\
-             [[solid.held]]\nset = \"outer\"\nx = true\ny = true\nz = true\n\
-             [[solid.held]]\nset = \"inner\"\n{inner}\n\
-             [[solid.held]]\nset = \"x_low\"\nx = true\n[[solid.held]]\nset = \"y_low\"\ny = true\n"
+             [[solid.fixed]]\nset = \"outer\"\nx = true\ny = true\nz = true\n\
+             [[solid.fixed]]\nset = \"inner\"\n{inner}\n\
+             [[solid.fixed]]\nset = \"x_low\"\nx = true\n[[solid.fixed]]\nset = \"y_low\"\ny = true\n"
         )
     };
     let said =
@@ -95,7 +95,7 @@ fn the_end_of_a_run_has_fields() {
 
 /// A rubber block, free at all its sides, under what its faces carry.
 pub fn block(further: &str) -> String {
-    let held = |axis: &str| format!("[[solid.held]]\nset = \"{axis}_low\"\n{axis} = true\n");
+    let held = |axis: &str| format!("[[solid.fixed]]\nset = \"{axis}_low\"\n{axis} = true\n");
     format!(
         "[solid.mesh]\ngenerate = \"bar\"\nlength = \"10 mm\"\nwidth = \"10 mm\"\nheight = \"10 mm\"\norder = 2\n\
          cells = {{ along = 2, across = 2, up = 2 }}\n[solid.material]\nlaw = \"elastomer\"\nrubber_modulus = \"1 MPa\"\n\
@@ -161,7 +161,7 @@ fn sleeves_that_would_pass_through_each_other_are_refused() {
     for verb in ["check", "plan", "statics", "run"] {
         let (code, message) = verdict(verb, &by("8.01 mm"));
         assert_eq!(code, Some(2), "{verb}: {message}");
-        assert!(message.contains("solid.held.z: the inner sleeve goes 8.0100 mm"), "{message}");
+        assert!(message.contains("solid.fixed.z: the inner sleeve goes 8.0100 mm"), "{message}");
         assert!(message.contains("is 8.0000 mm thick"), "{message}");
     }
     assert_eq!(verdict("check", &by("7.9 mm")).0, Some(0));
@@ -182,7 +182,7 @@ fn a_run_of_rubber_that_fails_keeps_the_last_row() {
     let place = Place::new();
     // A bar pressed to less than nothing, by chains that cannot be longer than straight.
     let held = |set: &str, x: &str| {
-        format!("[[solid.held]]\nset = \"{set}\"\nx = {x}\ny = true\nz = true\n")
+        format!("[[solid.fixed]]\nset = \"{set}\"\nx = {x}\ny = true\nz = true\n")
     };
     let text = format!(
         "[solid.mesh]\ngenerate = \"bar\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\nheight = \"10 mm\"\norder = 2\n\

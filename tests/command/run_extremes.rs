@@ -3,12 +3,12 @@
 use super::run_recorder::{column, table, to_the_end};
 use crate::run_common;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
+use bearing_dynamics::assembly::state::POSITION;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, SimulationError, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
 use bearing_dynamics::output::summary::{RunReport, run_summary};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, SimulationError, Stepping};
-use bearing_dynamics::solver::dynamics::state::POSITION;
-use bearing_dynamics::solver::profile::Profile;
 use run_common::{frictionless, jolted, request, simulation};
 
 /// Every integrator, with the stepping it is used with.

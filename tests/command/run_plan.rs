@@ -3,17 +3,19 @@
 use crate::command_line_common::{DEEP_GROOVE, done, read, scene as scene_file, write};
 use crate::run_common;
 
+use bearing_dynamics::assembly::channels::ChannelGroup;
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::plan;
+use bearing_dynamics::assembly::plan::motion::Planned;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::motion::foretell::{WITHIN, choose, foretell};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::numeric::clock::given_steps;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status, table_size};
-use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
-use bearing_dynamics::scene::{self, CageInRun, Format};
-use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::clock::given_steps;
-use bearing_dynamics::solver::dynamics::foretell::{WITHIN, choose, foretell};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::plan::{self, motion::Planned};
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::build::motion::{dynamic_problem, run_options};
+use bearing_dynamics::scene::{CageInRun, Format};
 use run_common::{frictionless, jolted, pressed, rattling, request, simulation, sliding};
 
 const BEARING: &str = r#"

@@ -2,6 +2,9 @@
 
 use crate::run_common;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
+use bearing_dynamics::motion::simulation::{Integrator, SimulationError, Start, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::journal::JournalError;
 use bearing_dynamics::output::session::{RunRequest, Session, Status};
 use bearing_dynamics::output::state::{
@@ -9,9 +12,6 @@ use bearing_dynamics::output::state::{
 };
 use bearing_dynamics::output::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::table::RunTable;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::{Integrator, SimulationError, Start, Stepping};
-use bearing_dynamics::solver::profile::Profile;
 use run_common::{
     complete, frictionless, jolted, of_steps, pressed, rattling, request, resumable, simulation,
     simulation_mut,

@@ -3,13 +3,13 @@
 use super::run_recorder::{table, to_the_end};
 use crate::run_common;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::VELOCITY;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session};
 use bearing_dynamics::output::summary::{RunReport, run_summary};
 use bearing_dynamics::output::table::RunTable;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
-use bearing_dynamics::solver::dynamics::state::VELOCITY;
-use bearing_dynamics::solver::profile::Profile;
 use nalgebra::{Matrix3, Vector3};
 use run_common::{common, complete, frictionless, request, simulation, simulation_mut, sliding};
 

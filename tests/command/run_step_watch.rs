@@ -4,24 +4,24 @@
 use crate::dynamics;
 use crate::run_common;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::{Simulation, SimulationError, Stepping};
+use bearing_dynamics::motion::stability::step_limit;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
 use bearing_dynamics::output::summary::{RunReport, run_summary};
 use bearing_dynamics::output::table::RunTable;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError, Stepping};
-use bearing_dynamics::solver::dynamics::stability::step_limit;
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
 use dynamics::{RPM, bearing, traction_laws};
 use run_common::{common::table_4_1, of_steps, resumable, simulation, simulation_mut};
 use run_common::{pressed, request, sliding};
 
 /// The largest stable step at the start.
 fn limit(problem: &DynamicProblem) -> f64 {
-    let options = bearing_dynamics::solver::dynamics::run::RunOptions {
+    let options = bearing_dynamics::motion::simulation::RunOptions {
         stepping: Stepping::FractionOfLimit(1.0),
         ..Default::default()
     };
@@ -30,7 +30,7 @@ fn limit(problem: &DynamicProblem) -> f64 {
 
 /// The largest stable step of a simulation as it stands.
 fn limit_of(simulation: &Simulation) -> f64 {
-    let mut system = System::new(simulation.system.assembly.clone(), Driver::Lanes);
+    let mut system = System::new(simulation.system.assembly.clone(), Kernel::Simd);
     step_limit(&mut system, simulation.time, &simulation.state).unwrap().step
 }
 

@@ -60,7 +60,7 @@ fn pressure_force_and_displacement_pull_a_bar_alike() {
             ("pressure = \"10 MPa\"", ""),
             ("x = \"-1000 N\"", ""),
             ("force = [\"-1 kN\", \"0 N\", \"0 N\"]", ""),
-            ("", "[[solid.held]]\nset = \"x_high\"\nx = \"-1.904762 um\"\n"),
+            ("", "[[solid.fixed]]\nset = \"x_high\"\nx = \"-1.904762 um\"\n"),
         ] {
             let load = match load {
                 "" => String::new(),
@@ -249,7 +249,7 @@ fn a_support_that_moves_carries_inertia() {
 name = "all"
 low = ["-1 mm", "-20 mm", "-20 mm"]
 high = ["50 mm", "20 mm", "20 mm"]
-[[solid.held]]
+[[solid.fixed]]
 set = "all"
 x = { smooth_ramp = ["0 mm", "1 mm"], duration = "1 ms" }
 [numerics]

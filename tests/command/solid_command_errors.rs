@@ -2,7 +2,7 @@
 
 use crate::solid_command_common;
 
-use bearing_dynamics::solver::solid::modes::ModeError;
+use bearing_dynamics::solids::modes::ModeError;
 use serde_json::Value;
 use solid_command_common::{ON_ROLLERS, Place, bar, command, number, shipped, stderr, succeed};
 use std::fs;
@@ -173,11 +173,11 @@ fn errors_name_what_is_wrong() {
         ("no length", "check", bar(1, "").replace("length = \"40 mm\"\n", "")),
         ("key of another generator", "check", bar(1, "").replace("order", "pockets = 8\norder")),
         ("size of a file", "check", format!("{}length = \"1 mm\"\n", file("bar.msh"))),
-        ("misspelt", "check", bar(1, "[[solid.held]]\nsets = \"x_low\"\n")),
-        ("not a list", "check", bar(1, "[solid.held]\nset = \"x_low\"\nx = true\n")),
-        ("nothing held", "check", bar(1, "[[solid.held]]\nset = \"x_low\"\n")),
-        ("no such set", "check", bar(1, "[[solid.held]]\nset = \"left\"\nx = true\n")),
-        ("two ways", "check", held("[[solid.held]]\nset = \"z_high\"\nx = \"1 um\"\n")),
+        ("misspelt", "check", bar(1, "[[solid.fixed]]\nsets = \"x_low\"\n")),
+        ("not a list", "check", bar(1, "[solid.fixed]\nset = \"x_low\"\nx = true\n")),
+        ("nothing held", "check", bar(1, "[[solid.fixed]]\nset = \"x_low\"\n")),
+        ("no such set", "check", bar(1, "[[solid.fixed]]\nset = \"left\"\nx = true\n")),
+        ("two ways", "check", held("[[solid.fixed]]\nset = \"z_high\"\nx = \"1 um\"\n")),
         ("no load", "check", held("[[solid.load]]\nset = \"x_high\"\n")),
         (
             "two loads",
@@ -215,7 +215,7 @@ fn errors_name_what_is_wrong() {
             "check",
             bar(1, "").replace("[solid.mesh]", "[solid]\ndamping = \"77 s\"\n[solid.mesh]"),
         ),
-        ("free in statics", "statics", bar(1, "[[solid.held]]\nset = \"x_low\"\nx = true\n")),
+        ("free in statics", "statics", bar(1, "[[solid.fixed]]\nset = \"x_low\"\nx = true\n")),
         ("no end", "run", held("")),
         ("step beyond the limit", "run", held("[numerics]\nend = \"1 ms\"\nstep = \"10 us\"\n")),
         (
@@ -269,7 +269,7 @@ fn accepted(place: &Place, text: &str) -> String {
     succeed(command("check", &place.scene("accepted.toml", text), &[]))
 }
 
-const CLAMPED: &str = "[[solid.held]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n";
+const CLAMPED: &str = "[[solid.fixed]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n";
 
 #[test]
 fn loads_that_supports_take_are_told() {
@@ -282,7 +282,7 @@ fn loads_that_supports_take_are_told() {
     let said = accepted(&place, &bar(1, &format!("{CLAMPED}{}", load("x_high"))));
     assert!(!said.contains("the support takes it"), "{said}");
     // The upper edge of an end of two cells has a quarter of it.
-    let roof = "[[solid.held]]\nset = \"z_high\"\nz = true\n";
+    let roof = "[[solid.fixed]]\nset = \"z_high\"\nz = true\n";
     let said = accepted(&place, &bar(1, &format!("{roof}{}", load("x_high"))));
     assert!(said.contains("25 % of the load on set \"x_high\""), "{said}");
 }

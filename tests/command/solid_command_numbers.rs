@@ -85,7 +85,7 @@ high = ["1 mm", "1 m", "1 m"]
 name = "top"
 plane = "z"
 at = "20 mm"
-[[solid.held]]
+[[solid.fixed]]
 set = "low"
 x = true
 y = true
@@ -189,7 +189,7 @@ fn no_equilibrium_has_an_element_inside_out() {
         "low = [\"5 mm\", \"-1 mm\", \"-1 mm\"]\nhigh = [\"1 m\", \"1 m\", \"1 m\"]",
     );
     let pushed = |by: &str| {
-        let end = format!("[[solid.held]]\nset = \"top\"\nx = \"{by}\"\ny = true\nz = true\n");
+        let end = format!("[[solid.fixed]]\nset = \"top\"\nx = \"{by}\"\ny = true\nz = true\n");
         scene(&place, &format!("{ends}{end}"))
     };
     succeed(command("statics", &pushed("-5 mm"), &["--dry"]));
@@ -306,7 +306,7 @@ fn an_unlikely_size_is_said() {
     let path = place.scene(
         "scene.toml",
         "[solid.mesh]\nfile = \"deck.inp\"\nunit = \"m\"\n[[solid.set]]\nname = \"foot\"\nplane = \"z\"\nat = \"0 m\"\n\
-         [[solid.held]]\nset = \"foot\"\nx = true\ny = true\nz = true\n[numerics]\nend = \"10 ms\"\n",
+         [[solid.fixed]]\nset = \"foot\"\nx = true\ny = true\nz = true\n[numerics]\nend = \"10 ms\"\n",
     );
     let out = place.path("out");
     for verb in ["check", "plan", "statics", "modes", "run"] {
@@ -326,7 +326,7 @@ fn bent(cells: [u8; 3], order: u8, poisson: &str, force: &str) -> String {
         "[solid.mesh]\ngenerate = \"bar\"\nlength = \"100 mm\"\nwidth = \"10 mm\"\nheight = \"10 mm\"\n\
          cells = {{ along = {along}, across = {across}, up = {up} }}\norder = {order}\n\
          [solid.material]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = {poisson}\n\
-         [[solid.held]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n\
+         [[solid.fixed]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n\
          [[solid.load]]\nset = \"x_high\"\nz = \"{force}\"\n"
     )
 }
@@ -404,7 +404,7 @@ fn meshes_that_lock_or_are_too_coarse_are_warned_of() {
     assert!(missing <= up_to(&said), "{missing}: {said}");
     // Without supports the first six are no vibrations.
     let free = bent([10, 2, 2], 2, "0.3", "-100 N");
-    let free = free.split_once("[[solid.held]]").unwrap().0.to_string() + "[modes]\ncount = 8\n";
+    let free = free.split_once("[[solid.fixed]]").unwrap().0.to_string() + "[modes]\ncount = 8\n";
     let said = succeed(command("modes", &place.scene("free.toml", &free), &["--dry"]));
     let rigid: Vec<bool> =
         said.lines().skip(1).take(8).map(|line| line.contains("rigid-body motion")).collect();

@@ -3,7 +3,7 @@
 use crate::resume_common;
 use crate::solid_command_common;
 
-use bearing_dynamics::solver::clock::rounded;
+use bearing_dynamics::numeric::clock::rounded;
 use resume_common::{assert_same_results, interrupted, stopped};
 use solid_command_common::{Place, SHORT_RUN, column, into_folder, json, stderr, succeed};
 use std::fs;

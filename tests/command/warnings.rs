@@ -65,7 +65,7 @@ fn bar(order: u8, poisson: &str, force: &str) -> String {
     format!(
         "[solid.mesh]\ngenerate = \"bar\"\nlength = \"100 mm\"\nwidth = \"10 mm\"\nheight = \"10 mm\"\n\
          cells = {{ along = 24, across = 4, up = 4 }}\norder = {order}\n[solid.material]\npoisson_ratio = {poisson}\n\
-         [[solid.held]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n[[solid.load]]\nset = \"x_high\"\nz = \"{force}\"\n"
+         [[solid.fixed]]\nset = \"x_low\"\nx = true\ny = true\nz = true\n[[solid.load]]\nset = \"x_high\"\nz = \"{force}\"\n"
     )
 }
 
@@ -151,7 +151,7 @@ fn of_solids() {
     }
     assert_raised("W10", "statics", &bar(2, "0.3", "-150 kN"), &fine);
     assert_raised("W11", "statics", &cube("-11.2", ""), &cube("-6", ""));
-    let pulled = |by: &str| block(&format!("[[solid.held]]\nset = \"x_high\"\nx = \"{by} mm\"\n"));
+    let pulled = |by: &str| block(&format!("[[solid.fixed]]\nset = \"x_high\"\nx = \"{by} mm\"\n"));
     // Incompressible rubber pulled to five times its length: chains of sqrt((25 + 2/5)/3)/sqrt(8) = 1.03; at three times 0.63.
     assert_raised("W12", "statics", &pulled("40"), &pulled("20"));
     let exact = changed(&pulled("40"), "chain = 8", "chain = 8\nchain_pull = \"inverse-langevin\"");

@@ -2,6 +2,11 @@
 #![allow(dead_code)]
 
 use crate::common::{FREE, problem};
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::loads::{CageBody, Drive, DrivenBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{
+    BodyState, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
+};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
@@ -9,27 +14,20 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, Material
 use bearing_dynamics::ch2_housing::bearing::hertz::effective_modulus;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::energy::Energy;
-use bearing_dynamics::solver::dynamics::model::{
-    CageBody, Drive, DynamicProblem, RaceBody, Rotation,
-};
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, Start, Stepping};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{
-    BodyState, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
-};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::energy::Energy;
+use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Start, Stepping};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use nalgebra::{UnitQuaternion, Vector3};
 
 pub const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 pub const RPM: f64 = std::f64::consts::TAU / 60.0;
 
-pub fn race(loads: [f64; 5], rotation: Rotation) -> RaceBody {
-    RaceBody {
+pub fn race(loads: [f64; 5], rotation: Rotation) -> DrivenBody {
+    DrivenBody {
         inertia: inertia::hollow_cylinder(15e-3, 22e-3, 12e-3, 7850.0),
         drives: loads.map(|load| Drive::Load(Profile::Constant(load))),
         rotation,
@@ -39,7 +37,7 @@ pub fn race(loads: [f64; 5], rotation: Rotation) -> RaceBody {
 }
 
 /// A race that nothing holds and nothing drives.
-pub fn free_race() -> RaceBody {
+pub fn free_race() -> DrivenBody {
     race([0.0; 5], Rotation::Torque(Profile::ZERO))
 }
 
@@ -182,7 +180,7 @@ pub fn random_state(problem: &DynamicProblem, seed: u64) -> Vec<f64> {
 /// A system as evaluated at a state, and the rates.
 pub fn evaluated(
     problem: &DynamicProblem,
-    driver: Driver,
+    driver: Kernel,
     t: f64,
     state: &[f64],
 ) -> (System, Vec<f64>) {
@@ -302,7 +300,7 @@ pub fn fixed_step(step: f64, start: Start) -> RunOptions {
     RunOptions {
         start,
         stepping: Stepping::Fixed(step),
-        driver: Driver::Lanes,
+        driver: Kernel::Simd,
         energy_limit: f64::INFINITY,
         ..RunOptions::default()
     }

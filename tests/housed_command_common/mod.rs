@@ -44,7 +44,7 @@ outer_radius = "50 mm"
 depth = "20 mm"
 cells = { around = 24, radial = 1, axial = 2 }
 order = 1
-[[solid.held]]
+[[solid.fixed]]
 set = "fixed"
 x = true
 y = true

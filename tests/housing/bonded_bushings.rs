@@ -1,18 +1,18 @@
 //! Bushings in elements beside a bearing: the shipped scene with `method` explicit or implicit.
 
+use bearing_dynamics::assembly::loads::Drive;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
+use bearing_dynamics::members::connection::Law;
+use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::simulation::RunOptions;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{
     HousedParts, Motion, Parts, RunRequest, Session, SessionError, Status,
 };
 use bearing_dynamics::output::state::{self, StateRecord, Stopped};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::dynamics::connection::Law;
-use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::housing::exchange::Exchange;
-use bearing_dynamics::solver::profile::Profile;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const SHIPPED: &str = include_str!("../../scenes/bearing_on_bushing.toml");
@@ -57,7 +57,7 @@ fn request(scene: &AssemblyScene, end: f64) -> RunRequest {
 /// What moves, and the elements that it is made of.
 struct Made {
     request: RunRequest,
-    assembly: bearing_dynamics::solver::dynamics::assembly::Assembly,
+    assembly: bearing_dynamics::assembly::lists::Assembly,
     bushings: Vec<BushingElements>,
 }
 

@@ -4,6 +4,11 @@
 use crate::dynamics;
 use crate::housing_exchange;
 
+use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::plan::Stage;
+use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{
     ContactNode, Cylinder, Frame, Penalty, contact_nodes,
@@ -12,16 +17,11 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch4_rotor::bore_friction::{BoreFriction, COEFFICIENT, STRETCH};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility};
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
-use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::housing::seat_friction::{Pressed, SeatFriction};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::plan::Stage;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::motion::bore_friction::{Pressed, SeatFriction};
+use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
 use dynamics::race;
 use housing_exchange::*;
 
@@ -59,7 +59,7 @@ pub fn rigid() -> (SolidModel, Vec<ContactNode>) {
 /// A race alone.
 fn alone(drives: [Drive; 5], rotation: Rotation) -> Assembly {
     let inertia = inertia::hollow_cylinder(32e-3, RADIUS, WIDTH, 7850.0);
-    let race = RaceBody { inertia, drives, ..race([0.0; 5], rotation) };
+    let race = DrivenBody { inertia, drives, ..race([0.0; 5], rotation) };
     let body = Body {
         name: "the outer race".into(),
         label: None,

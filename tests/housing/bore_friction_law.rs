@@ -1,6 +1,6 @@
 //! The spring between a bore's node and the outer race by itself (4.2.4.2): stick, slip, loops, and what its ledger books.
 
-use bearing_dynamics::ch4_rotor::bore_friction::{BoreFriction, Pull, Spring};
+use bearing_dynamics::ch4_rotor::bore_friction::{BoreFriction, FrictionUpdate, Spring};
 use bearing_dynamics::kinematics::vec3::{Vec3, add, add_scaled, dot, norm, scale, sub};
 
 const LAW: BoreFriction = BoreFriction { coefficient: 0.6, stretch: 1e-7 };
@@ -14,7 +14,10 @@ const ALONG: Vec3 = [1.0, 0.0, 0.0];
 const ROUND: Vec3 = [0.0, 0.8, 0.6];
 
 /// The spring of a node that goes to each place in turn (m along and round from where it touched first) under each load.
-fn through(law: &BoreFriction, steps: impl IntoIterator<Item = ([f64; 2], f64)>) -> Vec<Pull> {
+fn through(
+    law: &BoreFriction,
+    steps: impl IntoIterator<Item = ([f64; 2], f64)>,
+) -> Vec<FrictionUpdate> {
     let mut spring = Spring::default();
     let pull = |([along, round], load): ([f64; 2], f64)| {
         let place = add_scaled(add_scaled(HERE, along, ALONG), round, ROUND);
@@ -25,7 +28,7 @@ fn through(law: &BoreFriction, steps: impl IntoIterator<Item = ([f64; 2], f64)>)
     steps.into_iter().map(pull).collect()
 }
 
-fn force(pull: &Pull) -> Vec3 {
+fn force(pull: &FrictionUpdate) -> Vec3 {
     pull.spring.force()
 }
 

@@ -3,15 +3,15 @@
 use super::bore_friction::{LAW, STIFFNESS, TIGHT, rigid};
 use crate::housing_exchange;
 
+use bearing_dynamics::assembly::loads::Rotation;
+use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bore_contact::{Cylinder, Frame, Penalty};
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::kinematics::Pose;
-use bearing_dynamics::solver::dynamics::model::Rotation;
-use bearing_dynamics::solver::dynamics::state::{SPIN, VELOCITY};
-use bearing_dynamics::solver::housing::exchange::Exchange;
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::housing::seat_friction::{Pressed, SeatFriction};
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::motion::bore_friction::{Pressed, SeatFriction};
+use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::numeric::profile::Profile;
 use housing_exchange::*;
 use nalgebra::{UnitQuaternion, Vector3};
 

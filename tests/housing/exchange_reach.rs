@@ -5,12 +5,12 @@ use super::housing_exchange::{
 };
 use crate::dynamics;
 
+use bearing_dynamics::assembly::lists::OUTER;
+use bearing_dynamics::assembly::state::VELOCITY;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
-use bearing_dynamics::solver::dynamics::state::VELOCITY;
-use bearing_dynamics::solver::housing::exchange::ExchangeError;
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::motion::coupling::ExchangeError;
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::numeric::profile::Profile;
 use dynamics::*;
 use nalgebra::Vector3;
 

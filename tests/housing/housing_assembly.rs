@@ -4,17 +4,16 @@ use crate::housed::{HousedSearch, HousedState};
 use crate::housing_common;
 
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::equilibrium::statics;
+use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem, StaticsError};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::recorder::seat::SeatRow;
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreError, Fit};
-use bearing_dynamics::solver::housing::condensed::{
-    CondensedBore, Reach, condense, geometry_error,
-};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{Load, SolidModel};
-use bearing_dynamics::solver::statics::{self, Condition, StaticProblem, StaticsError};
+use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreError, Fit};
+use bearing_dynamics::solids::condensation::{CondensedBore, Reach, condense, geometry_error};
+use bearing_dynamics::solids::model::{Load, SolidModel};
 use housing_common::*;
 use nalgebra::{UnitQuaternion, Vector3};
 

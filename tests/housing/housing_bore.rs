@@ -4,21 +4,21 @@ use crate::housing_common;
 
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::equilibrium::statics::StaticsError;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
-use bearing_dynamics::solver::housing::bore_equilibrium::{
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::bore_equilibrium::{
     Axial, BoreError, BoreSearch, BoreState, Fit, RaceLoad, radius_of_fit,
 };
-use bearing_dynamics::solver::housing::condensed::{
+use bearing_dynamics::solids::condensation::{
     CondenseError, CondensedBore, Reach, condense, geometry_error,
 };
-use bearing_dynamics::solver::housing::presses::race_under_load;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
-use bearing_dynamics::solver::statics::StaticsError;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::load_patterns::race_under_load;
+use bearing_dynamics::solids::model::{Prescribed, SolidModel};
 use housing_common::*;
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;

@@ -4,25 +4,23 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::lists::OUTER;
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty, contact_nodes};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
-use bearing_dynamics::solver::dynamics::state::{POSITION, SPIN, VELOCITY};
-use bearing_dynamics::solver::housing::exchange::{
-    Exchange, ExchangeError, ExchangeOptions, SolidPart,
-};
-use bearing_dynamics::solver::housing::seat::{Seat, SeatState};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::contact::{CylinderContact, CylinderPath};
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
-use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::race_in_bore::{Seat, SeatState};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::contact::{CylinderContact, CylinderPath};
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
+use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
 use common::table_4_1;
 use dynamics::*;
 use nalgebra::Vector3;
@@ -61,8 +59,8 @@ pub fn housing(held: bool, damping: f64) -> (SolidModel, Vec<ContactNode>) {
 }
 
 /// The outer race as a body that does not turn about its axis.
-pub fn outer_race() -> RaceBody {
-    RaceBody {
+pub fn outer_race() -> DrivenBody {
+    DrivenBody {
         inertia: inertia::hollow_cylinder(32e-3, RADIUS, WIDTH, 7850.0),
         ..race([0.0; 5], Rotation::Speed(Profile::ZERO))
     }

@@ -5,11 +5,11 @@ use crate::housing_common;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, Fit};
-use bearing_dynamics::solver::housing::condensed::{Reach, condense};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::contact::{CylinderContact, CylinderPath};
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreSearch, Fit};
+use bearing_dynamics::solids::condensation::{Reach, condense};
+use bearing_dynamics::solids::contact::{CylinderContact, CylinderPath};
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
 use housing_common::*;
 
 /// The race pushed aside with clearance, in transition and with interference. What is neglected is of

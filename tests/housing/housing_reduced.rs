@@ -6,34 +6,31 @@ use crate::common;
 use crate::dynamics;
 use crate::housing_common;
 
+use bearing_dynamics::assembly::lists::{Assembly, OUTER};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::plan::counts::Counts;
+use bearing_dynamics::assembly::plan::solid::SolidSteps;
+use bearing_dynamics::assembly::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::kinematics::vec3::{add, cross, dot, scale};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::reduced_solid::ReducedSolid;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::reduced_solid::ReducedSolid;
-use bearing_dynamics::solver::dynamics::run::{
+use bearing_dynamics::motion::reduced_start;
+use bearing_dynamics::motion::reduced_start::{add_housing, put_in_equilibrium};
+use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{
-    ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
-};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, Fit};
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
-use bearing_dynamics::solver::housing::presses::{Hardest, Presses, pressed};
-use bearing_dynamics::solver::housing::reduce::{
-    CutOff, ReduceError, ReduceOptions, Reduction, reduce,
-};
-use bearing_dynamics::solver::housing::reduced_start::{self, add_housing, put_in_equilibrium};
-use bearing_dynamics::solver::plan::solid::SolidSteps;
-use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{Load, SolidModel};
-use bearing_dynamics::solver::solid::tangent::{Unknowns, pattern, stiffness};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::bore_equilibrium::{Axial, Fit};
+use bearing_dynamics::solids::condensation::{CondensedBore, condense};
+use bearing_dynamics::solids::load_patterns::{LargestLoads, LoadPatterns, pressed};
+use bearing_dynamics::solids::model::{Load, SolidModel};
+use bearing_dynamics::solids::reduction::{CutOff, ReduceError, ReduceOptions, Reduction, reduce};
+use bearing_dynamics::solids::tangent::{Unknowns, pattern, stiffness};
 use common::table_4_1;
 use dynamics::*;
 use housing_common::{BORE, COARSE, RING, WIDTH, YOUNG, bore_of, mesh_of, model_of, reach};
@@ -53,9 +50,13 @@ pub(crate) struct Housing {
 }
 
 fn reduced_model(model: SolidModel, bore: CondensedBore, modes_to: f64, left_out: f64) -> Housing {
-    let loads =
-        pressed(&bore, PENALTY(), &fit(0.0), &Hardest { force: 250.0, ..Hardest::default() })
-            .unwrap();
+    let loads = pressed(
+        &bore,
+        PENALTY(),
+        &fit(0.0),
+        &LargestLoads { force: 250.0, ..LargestLoads::default() },
+    )
+    .unwrap();
     let options = ReduceOptions { modes_to, left_out };
     let reduction = reduce(&model, &bore, PENALTY(), &loads, &options).unwrap();
     Housing { model, bore, reduction }
@@ -80,7 +81,7 @@ pub(crate) fn plain() -> Housing {
 
 /// Table 2.2's bearing whose outer race moves in a housing.
 pub(crate) fn mounted(load: f64) -> DynamicProblem {
-    let mut outer = RaceBody {
+    let mut outer = DrivenBody {
         inertia: inertia::hollow_cylinder(32e-3, BORE, WIDTH, 7850.0),
         ..race([0.0; 5], Rotation::Speed(Profile::ZERO))
     };
@@ -115,7 +116,7 @@ pub fn options(integrator: Integrator, stepping: Stepping) -> RunOptions {
 
 pub(crate) fn state_of(assembly: &Assembly) -> (System, Vec<f64>) {
     let state = start::at_equilibrium(assembly).unwrap();
-    (System::new(assembly.clone(), Driver::Lanes), state)
+    (System::new(assembly.clone(), Kernel::Simd), state)
 }
 
 pub(crate) fn rates_of(system: &mut System, t: f64, state: &[f64]) -> Vec<f64> {
@@ -240,13 +241,17 @@ fn frequencies_that_are_none_and_too_many_shapes_are_refused() {
     let bore = condense(&model, &bore_of(&mesh), &reach()).unwrap();
     for modes_to in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let options = ReduceOptions { modes_to, left_out: 1e-3 };
-        let refused = reduce(&model, &bore, PENALTY(), &Presses::default(), &options);
+        let refused = reduce(&model, &bore, PENALTY(), &LoadPatterns::default(), &options);
         assert!(matches!(refused, Err(ReduceError::Frequency { .. })), "{modes_to}");
     }
     // No natural shape below: all is static answers.
-    let loads =
-        pressed(&bore, PENALTY(), &fit(0.0), &Hardest { force: 250.0, ..Hardest::default() })
-            .unwrap();
+    let loads = pressed(
+        &bore,
+        PENALTY(),
+        &fit(0.0),
+        &LargestLoads { force: 250.0, ..LargestLoads::default() },
+    )
+    .unwrap();
     let options = ReduceOptions { modes_to: 1.0, left_out: 1e-3 };
     let stiff = reduce(&model, &bore, PENALTY(), &loads, &options).unwrap();
     assert_eq!(stiff.cut_off.natural, 0);
@@ -265,7 +270,7 @@ fn without_overlap_nothing_pushes() {
     assert_eq!(system.energy(&state).seat, 0.0);
     // With one it does.
     let tight = seated(&housing, &mounted(0.0), Profile::Constant(BORE + 1e-6));
-    let mut system = System::new(tight, Driver::Lanes);
+    let mut system = System::new(tight, Kernel::Simd);
     rates_of(&mut system, 0.0, &state);
     assert_eq!(system.seats[0].contact.touching, housing.bore.nodes.len());
     assert!(system.energy(&state).seat > 0.0);
@@ -288,7 +293,7 @@ fn forces_are_the_slopes_of_the_energy() {
     let mut own = vec![0.0; count];
     let now = [&state[at..at + count], &state[at + count..at + 2 * count]];
     let all = SolidSteps { supports: true, loads: true, gravity: true, damping: true };
-    solid.accelerations(all, 0.0, now, &mut own, &mut Tally::default());
+    solid.accelerations(all, 0.0, now, &mut own, &mut Counts::default());
     let body = system.places.body(OUTER);
     for _ in 0..8 {
         let (shift, turn) = (noise.vector(1.0), noise.vector(1.0 / BORE));
@@ -356,7 +361,7 @@ fn the_race_moves_by_the_force_and_the_moment_of_its_seat() {
     assert!(contact.moment[1].abs() + contact.moment[2].abs() > 1e-2, "{contact:?}");
     let mut loose = assembly.clone();
     loose.seats[0].radius = Profile::Constant(BORE - 1e-4);
-    let free = rates_of(&mut System::new(loose, Driver::Lanes), 0.0, &state);
+    let free = rates_of(&mut System::new(loose, Kernel::Simd), 0.0, &state);
     let inertia = *assembly.bodies[OUTER].inertia().unwrap();
     let at = system.places.body(OUTER);
     for i in 1..3 {

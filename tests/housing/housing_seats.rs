@@ -2,19 +2,19 @@
 
 use crate::housing_common;
 
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::static_lists::{
+    Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSeat,
+};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::equilibrium::statics::{
+    AssemblySolution, Condition, StaticOptions, solve_assembly,
+};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::euler::{about, quaternion};
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreSearch, BoreState, Fit};
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::static_assembly::{
-    Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSeat,
-};
-use bearing_dynamics::solver::statics::{
-    AssemblySolution, Condition, StaticOptions, solve_assembly,
-};
+use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreSearch, BoreState, Fit};
+use bearing_dynamics::solids::condensation::CondensedBore;
 use housing_common::*;
 use nalgebra::{DMatrix, SVector, UnitQuaternion, Vector3};
 use std::f64::consts::PI;

@@ -7,13 +7,13 @@ use crate::housing_common::*;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
-use bearing_dynamics::solver::housing::held_motions::{
+use bearing_dynamics::solids::condensation::{CondensedBore, condense};
+use bearing_dynamics::solids::fixed_interface_modes::{
     Natural, natural_shapes_of, swinging_housing,
 };
-use bearing_dynamics::solver::housing::inertia::{MovingBody, housing_mass, modes};
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::tangent::{PRESCRIBED, pattern, stiffness};
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::tangent::{PRESCRIBED, pattern, stiffness};
+use bearing_dynamics::vibrations::quasi_static_limit::{MovingBody, housing_mass, modes};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::f64::consts::TAU;
 

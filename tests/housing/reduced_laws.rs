@@ -4,15 +4,15 @@ use crate::dynamics::{GRAVITY, Noise};
 use crate::housing_common::{BORE, YOUNG};
 use crate::housing_reduced::*;
 
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::reduced_solid::{ModalLoad, Surface, SurfaceNode};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{LEDGER, POSITION};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::assembly::lists::{Assembly, OUTER};
+use bearing_dynamics::assembly::loads::Drive;
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{LEDGER, POSITION};
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::reduced_solid::{ModalLoad, Surface, SurfaceNode};
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 
 /// All that can do work at once: a solid with weight, damping and a load that grows, a race that grows into its bore.
 fn busy(mut assembly: Assembly) -> Assembly {
@@ -49,7 +49,7 @@ fn the_ledger_has_what_the_energy_of_shapes_and_seats_loses() {
         let race = assembly.bodies[OUTER].driven_mut().unwrap();
         race.drives[0] = Drive::Motion(Profile::Constant(-along * axis[0]));
         let mut state = shaken.clone();
-        let mut system = System::new(assembly, Driver::Lanes);
+        let mut system = System::new(assembly, Kernel::Simd);
         for (i, axis) in axis.into_iter().enumerate() {
             state[at + POSITION + i] -= along * axis;
         }
@@ -83,7 +83,7 @@ fn no_stage_sees_loads_and_growth_of_later() {
     let mut housing = plain();
     let settled = settled(&mut housing, &mounted(400.0), 0.2e-6);
     let (_, state) = state_of(&settled);
-    let mut system = System::new(busy(settled), Driver::Lanes);
+    let mut system = System::new(busy(settled), Kernel::Simd);
     let before = rates_of(&mut system, 1e-4, &state);
     let after = rates_of(&mut system, 1.5e-4, &state);
     let (at, count) = (system.solids[0], system.assembly.solids[0].count());
@@ -106,7 +106,7 @@ fn no_stage_sees_loads_and_growth_of_later() {
 
 /// Rates of outer race and shapes, bearing by bearing, with shapes that have gone somewhere.
 fn rates_by_bearing(assembly: &Assembly) -> Vec<Vec<f64>> {
-    let mut system = System::new(assembly.clone(), Driver::Lanes);
+    let mut system = System::new(assembly.clone(), Kernel::Simd);
     let mut state = start::nominal(assembly);
     for (index, solid) in assembly.solids.iter().enumerate() {
         let (at, count) = (system.solids[index], solid.count());
@@ -179,7 +179,7 @@ fn nodes_over_the_rim_are_touched_as_far_as_is_said() {
         for way in [1.0, -1.0] {
             let race = assembly.bodies[OUTER].driven_mut().unwrap();
             race.drives[0] = Drive::Motion(Profile::Constant(way * slid));
-            let mut system = System::new(assembly.clone(), Driver::Lanes);
+            let mut system = System::new(assembly.clone(), Kernel::Simd);
             rates_of(&mut system, 0.0, &state);
             let touching = system.seats[0].contact.touching;
             assert_eq!(touching == all, whole, "{slid}: {touching} of {all}");

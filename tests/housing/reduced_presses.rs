@@ -2,12 +2,12 @@
 
 use crate::housing_reduced::{Housing, fit, ring};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, BoreState, RaceLoad};
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::presses::race_under_load;
-use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
-use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, reduce};
-use bearing_dynamics::solver::solid::tangent::{Unknowns, pattern, stiffness};
+use bearing_dynamics::solids::bore_equilibrium::{BoreSearch, BoreState, RaceLoad};
+use bearing_dynamics::solids::condensation::CondensedBore;
+use bearing_dynamics::solids::load_patterns::race_under_load;
+use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
+use bearing_dynamics::solids::reduction::{LEFT_OUT, ReduceOptions, reduce};
+use bearing_dynamics::solids::tangent::{Unknowns, pattern, stiffness};
 use nalgebra::DMatrix;
 
 use crate::housing_common::{WIDTH, YOUNG};
@@ -20,7 +20,7 @@ fn rest(bore: &CondensedBore, interference: f64, load: &RaceLoad) -> BoreState {
 }
 
 /// Natural shapes of the ring up to 40 kHz and answers to these; how far its race is off under a load, over its way.
-fn off(interference: f64, hardest: &Hardest, loads: &[RaceLoad]) -> Vec<f64> {
+fn off(interference: f64, hardest: &LargestLoads, loads: &[RaceLoad]) -> Vec<f64> {
     let mut housing = ring(YOUNG, |_| {}, 40e3, 1e-2);
     let loads_of = pressed(&housing.bore, PENALTY(), &fit(interference), hardest).unwrap();
     let options = ReduceOptions { modes_to: 40e3, left_out: LEFT_OUT };
@@ -51,13 +51,13 @@ fn presses_with_levers_and_moments_alone_are_answered_to() {
     let force = 250.0;
     let levered = [0.0, 0.2, -0.6, 1.0]
         .map(|lever| RaceLoad { force: across(force), moment: turned(lever * WIDTH * force) });
-    let hardest = Hardest { force, ..Hardest::default() };
+    let hardest = LargestLoads { force, ..LargestLoads::default() };
     let errors = off(0.0, &hardest, &levered);
     println!("{errors:?}");
     assert!(errors.iter().all(|error| *error <= MOST), "{errors:?}");
     // A tight race under a moment that lifts it at either end.
     let moment = RaceLoad { force: [0.0; 3], moment: turned(40.0) };
-    let hardest = Hardest { force: 1.0, moment: 40.0, start: None };
+    let hardest = LargestLoads { force: 1.0, moment: 40.0, start: None };
     let errors = off(0.1e-6, &hardest, &[moment]);
     println!("{errors:?}");
     assert!(errors[0] <= MOST, "{errors:?}");
@@ -73,7 +73,7 @@ fn it_rings_against_a_race_as_the_whole_does() {
         &housing.bore,
         PENALTY(),
         &fit(1e-6),
-        &Hardest { force: 250.0, ..Hardest::default() },
+        &LargestLoads { force: 250.0, ..LargestLoads::default() },
     );
     let options = ReduceOptions { modes_to: MODES_TO, left_out: LEFT_OUT };
     let found =
@@ -140,7 +140,7 @@ fn the_press_of_the_start_is_answered_to() {
     let load = RaceLoad { force: [0.0, 900.0, -2000.0], moment: [0.0, 40.0, 0.0] };
     let start = rest(&ring(YOUNG, |_| {}, 40e3, 1e-2).bore, 0.0, &load);
     let turned = RaceLoad { force: [0.0, 2000.0, 900.0], moment: [0.0, 0.0, 40.0] };
-    let hardest = Hardest { force: 1.0, moment: 0.0, start: Some(&start) };
+    let hardest = LargestLoads { force: 1.0, moment: 0.0, start: Some(&start) };
     let errors = off(0.0, &hardest, &[load, turned]);
     println!("{errors:?}");
     // Two searches, and combinations of answers that are kept as new down to 1e-10 of the energy.
@@ -184,7 +184,7 @@ fn what_is_left_out_of_the_compliance_is_what_is_said() {
         &housing.bore,
         PENALTY(),
         &fit(0.0),
-        &Hardest { force: 250.0, ..Hardest::default() },
+        &LargestLoads { force: 250.0, ..LargestLoads::default() },
     )
     .unwrap();
     for load in presses.own.into_iter().chain(presses.others) {

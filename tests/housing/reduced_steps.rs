@@ -6,20 +6,20 @@ use super::housing_reduced::{mounted, options, plain, rates_of, ring, settled, s
 use crate::dynamics;
 use crate::housing_common;
 
+use bearing_dynamics::assembly::lists::{Assembly, Body, INNER, Mobility, OUTER};
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{POSITION, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
-use bearing_dynamics::solver::dynamics::arrow::Arrow;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, INNER, Mobility, OUTER};
-use bearing_dynamics::solver::dynamics::contacts::Want;
-use bearing_dynamics::solver::dynamics::control::{Attempt, Controller, SHARE};
-use bearing_dynamics::solver::dynamics::linearised::Linearised;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::reduced_solid::{ModalLoad, ReducedSolid};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::dynamics::seat::Seat;
-use bearing_dynamics::solver::dynamics::stability::{growth, jacobian, step_limit};
-use bearing_dynamics::solver::dynamics::state::{POSITION, VELOCITY};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::members::contacts::Want;
+use bearing_dynamics::members::housing_fit::Seat;
+use bearing_dynamics::members::reduced_solid::{ModalLoad, ReducedSolid};
+use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
+use bearing_dynamics::motion::error_control::{Attempt, Controller, SHARE};
+use bearing_dynamics::motion::linearised::Linearised;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::motion::stability::{growth, jacobian, step_limit};
+use bearing_dynamics::numeric::profile::Profile;
 use dynamics::*;
 use housing_common::{BORE, YOUNG};
 use nalgebra::Complex;
@@ -97,7 +97,7 @@ fn is_the_slope(assembly: &Assembly, by_shapes: bool) {
     assert_eq!(touching.iter().sum::<usize>() > count, by_shapes, "{touching:?} {count}");
     let mut linearised = Linearised::new(&system);
     linearised.update(&system, &state);
-    let mut arrow = Arrow::new(&system, &linearised);
+    let mut arrow = BlockArrowMatrix::new(&system, &linearised);
     let (at, bodies) = (system.solids[0], [OUTER, INNER].map(|body| system.places.body(body)));
     let mut noise = Noise(11);
     for h in [1e-7, 3e-6] {
@@ -198,7 +198,7 @@ fn error_control_sees_the_shapes() {
     let assembly = settled(&mut housing, &mounted(400.0), 0.5e-6);
     let (system, state) = state_of(&assembly);
     let mut control = Controller::new(&assembly, 1e-3, 5.0);
-    control.see(&system);
+    control.record(&system);
     let (at, count) = (system.solids[0], assembly.solids[0].count());
     let reach: Vec<f64> = assembly.solids[0].surfaces[0].largest().collect();
     let mut attempt = Attempt::new(state.len());

@@ -4,6 +4,10 @@
 use crate::common;
 use crate::dynamics;
 
+use bearing_dynamics::assembly::lists::{Assembly, Bearing, Body, Mobility};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{BODY, BodyState, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{
@@ -13,17 +17,13 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::mesh::tet_mesh::Elements;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing, Body, Mobility};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, SPIN, VELOCITY};
-use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::seat::{Seat, SeatState};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::contact::{CylinderContact, CylinderPath};
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
-use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::race_in_bore::{Seat, SeatState};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::contact::{CylinderContact, CylinderPath};
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
+use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
 use common::table_4_1;
 use dynamics::*;
 use nalgebra::Vector3;
@@ -116,15 +116,15 @@ pub fn body(name: &str, mobility: Mobility, x: f64) -> Body {
     }
 }
 
-pub fn shaft() -> RaceBody {
-    RaceBody {
+pub fn shaft() -> DrivenBody {
+    DrivenBody {
         inertia: inertia::hollow_cylinder(0.0, 15e-3, 120e-3, 7850.0),
         ..race([0.0; 5], Rotation::Speed(Profile::Constant(100.0)))
     }
 }
 
-fn outer_race() -> RaceBody {
-    RaceBody {
+fn outer_race() -> DrivenBody {
+    DrivenBody {
         inertia: inertia::hollow_cylinder(32e-3, RADIUS, WIDTH, 7850.0),
         ..race([0.0; 5], Rotation::Speed(Profile::ZERO))
     }
@@ -132,7 +132,7 @@ fn outer_race() -> RaceBody {
 
 /// A shaft on two bearings with a little interference between balls and races; body 1 is the left outer race,
 /// body 2 the right one.
-pub fn on_two(shaft: RaceBody, damping: ContactDamping) -> Assembly {
+pub fn on_two(shaft: DrivenBody, damping: ContactDamping) -> Assembly {
     let race = |name: &str, x| body(name, Mobility::Driven(outer_race().into()), x);
     let template = bearing(table_4_1(-5e-6), [0.0; 5], 0.0).assembly().bearings.remove(0);
     let seated = |name: &str, along: f64, outer: usize| Bearing {
@@ -176,7 +176,7 @@ pub fn housed(
 }
 
 /// A blow of 2 kN against the shaft, 1 ms long, `off` its middle (m).
-pub fn struck(off: f64) -> RaceBody {
+pub fn struck(off: f64) -> DrivenBody {
     let blow = |peak| Profile::HalfSine { base: 0.0, peak, start: 1e-5, duration: 1e-3 };
     let mut struck = shaft();
     struck.drives[2] = Drive::Load(blow(-2000.0));
@@ -495,7 +495,7 @@ fn they_settle_as_levers_and_solids_have_it() {
     const LOAD: f64 = 1000.0;
     const OFF: f64 = 10e-3;
     let rise = |to| Drive::Load(Profile::SmoothRamp { from: 0.0, to, start: 0.0, duration: 2e-3 });
-    let mut pressed = RaceBody { rotation: Rotation::Speed(Profile::ZERO), ..shaft() };
+    let mut pressed = DrivenBody { rotation: Rotation::Speed(Profile::ZERO), ..shaft() };
     (pressed.drives[2], pressed.drives[3]) = (rise(-LOAD), rise(LOAD * OFF));
     pressed.foundation_damping = [1e3, 3e3, 3e3, 5.0, 5.0];
     let damped = |housing: Housing| Housing { damping: 4000.0, ..housing };

@@ -7,13 +7,13 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzModel, RaceSide, contact};
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, contact_nodes};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh};
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach, condense};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
-use bearing_dynamics::solver::statics::{Condition, StaticProblem};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::condensation::{CondensedBore, Reach, condense};
+use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 

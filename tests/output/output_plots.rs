@@ -53,7 +53,7 @@ fn polar_plot(curves: Vec<Curve>) -> PolarPlot {
 }
 
 fn ball_curve(name: &str, factor: f64) -> Curve {
-    let point = |ball: &bearing_dynamics::solver::statics::BallState| {
+    let point = |ball: &bearing_dynamics::equilibrium::statics::BallState| {
         [ball.azimuth, factor * ball.outer.normal_load]
     };
     Curve::new(name, solution().balls.iter().map(point).collect())

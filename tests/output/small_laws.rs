@@ -87,9 +87,9 @@ mod json {
 }
 
 mod bushing_reach {
+    use bearing_dynamics::assembly::mount::Mount;
     use bearing_dynamics::kinematics::euler::quaternion;
     use bearing_dynamics::output::bushing_reach::*;
-    use bearing_dynamics::solver::mount::Mount;
     use nalgebra::Vector3;
 
     #[test]

@@ -2,20 +2,20 @@
 
 use crate::beam::steel;
 use crate::relaxing::two_on_relaxing;
+use bearing_dynamics::assembly::lists::{Assembly, Body, GROUND, Mobility};
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, GROUND, Mobility};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
-use bearing_dynamics::solver::dynamics::model::{Drive, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::shaft::ElasticShaft;
-use bearing_dynamics::solver::housing::inertia::MovingBody;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
-use bearing_dynamics::solver::rotor::model::{Rotor, RotorError, RotorModel, Support};
-use bearing_dynamics::solver::rotor::unbalance::Unbalance;
-use bearing_dynamics::solver::shaft_shapes::{Kept, free_shaft};
-use bearing_dynamics::solver::vibrations::{Whirling, whirling};
+use bearing_dynamics::equilibrium::initial::{at_start, static_assembly};
+use bearing_dynamics::members::beam::{Beam, BeamDisc};
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::flexible_shaft::ElasticShaft;
+use bearing_dynamics::members::shaft_modes::{Kept, free_shaft};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
+use bearing_dynamics::vibrations::rotor::{Rotor, RotorError, RotorModel, Support};
+use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, whirling};
+use bearing_dynamics::vibrations::unbalance_response::Unbalance;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix4, RowVector2, Vector2};
 
 pub const SPEED: f64 = 900.0;
@@ -42,7 +42,7 @@ fn body(name: &str, mobility: Mobility, x: f64) -> Body {
 
 /// Spins as given, free otherwise.
 fn spinning(inertia: Inertia, speed: f64) -> Mobility {
-    let race = RaceBody {
+    let race = DrivenBody {
         inertia,
         drives: [0; 5].map(|_| Drive::Load(Profile::ZERO)),
         rotation: Rotation::Speed(Profile::Constant(speed)),
@@ -81,7 +81,7 @@ pub fn assembly(internal_damping: f64) -> Assembly {
     }
 }
 
-pub fn whirl(assembly: &Assembly) -> Whirling {
+pub fn whirl(assembly: &Assembly) -> SmallMotionModel {
     let still = static_assembly(assembly, 0.0, &[]);
     let found = at_start(assembly).unwrap();
     let inertia = *assembly.bodies[0].inertia().unwrap();

@@ -1,7 +1,7 @@
 //! A shaft of stations against beams that have closed forms.
 
 use bearing_dynamics::ch4_rotor::beam::{Section, ShearCoefficient};
-use bearing_dynamics::solver::rotor::beam::{
+use bearing_dynamics::members::beam::{
     Beam, BeamDisc, BeamError, BeamMatrices, BeamSegment, STATION,
 };
 use nalgebra::{DMatrix, DVector};

@@ -1,11 +1,11 @@
 //! A shaft whose elements take explicit steps beside what sits on it.
 
 use bearing_dynamics::kinematics::vec3::{Vec3, add, add_scaled, cross, norm, scale, sub};
+use bearing_dynamics::motion::coupling::Exchange;
 use bearing_dynamics::output::session::{HousedParts, Motion, Parts, RunRequest, Session, Status};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::shaft_problem::take_shafts;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::shaft::take_shafts;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::housing::exchange::Exchange;
 
 const SHIPPED: &str = include_str!("../../scenes/rotor_in_elements.toml");
 const LOAD: &str = "load = [{ at = \"0 mm\", y = { half_sine = \"200 N\", duration = \"3 ms\" }, z = { smooth_ramp = [\"0 N\", \"-600 N\"], duration = \"2 ms\" } }]";

@@ -1,15 +1,15 @@
 //! Whirl, modes and critical speeds on springs that relax, against another formulation and roots of their equations.
 
 use crate::assemblies::{ARMS, EVEN, PLACES, SPEED, assembly, beam, two_rigid, whirl};
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::connection::{Law, MaxwellElement};
-use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
-use bearing_dynamics::solver::housing::inertia::MovingBody;
-use bearing_dynamics::solver::rotor::model::{Rotor, RotorModel, Support, Vibrations};
-use bearing_dynamics::solver::rotor::relaxing::Relaxing;
-use bearing_dynamics::solver::rotor::whirl::Whirl;
-use bearing_dynamics::solver::vibrations::{natural_motions, whirling};
+use bearing_dynamics::equilibrium::initial::{at_start, static_assembly};
+use bearing_dynamics::members::connection::{Law, MaxwellElement};
+use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
+use bearing_dynamics::vibrations::relaxing::Relaxing;
+use bearing_dynamics::vibrations::rotor::{LinearSystem, Rotor, RotorModel, Support};
+use bearing_dynamics::vibrations::small_motions::{natural_motions, whirling};
+use bearing_dynamics::vibrations::whirl::Whirl;
 use nalgebra::{Complex, DMatrix, Matrix4};
 
 const RELAXES: [(f64, f64); 2] = [(3e5, 1e-3), (1e5, 20e-3)];
@@ -290,7 +290,7 @@ fn few_shapes_follow_what_brakes_them() {
             relaxing.push(Relaxing { levers, stiffness, relaxation_time, spin: 0.0 });
         }
     }
-    let all = Vibrations {
+    let all = LinearSystem {
         stiffness,
         damping,
         gyroscopic: matrices.gyroscopic.clone(),

@@ -1,12 +1,12 @@
 //! Run-ups that try a bent shaft: right, or a typed error.
 
+use bearing_dynamics::assembly::channels::ChannelGroup;
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::motion::error::SimulationError;
+use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::output::session::{RunRequest, Session};
-use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::dynamics::failure::SimulationError;
-use bearing_dynamics::solver::dynamics::run::Simulation;
-use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 
 const SHIPPED: &str = include_str!("../../scenes/rotor_run_up.toml");
 const DAMPING: &str = "damping = \"100 1/s\"                      # of all motion, as (2.7)\n";

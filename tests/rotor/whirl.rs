@@ -1,11 +1,11 @@
 //! Whirl, critical speeds and orbits against closed forms.
 
 use crate::beam::{DENSITY, E, full, steel};
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc};
-use bearing_dynamics::solver::rotor::critical::Critical;
-use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorError, RotorModel, Support};
-use bearing_dynamics::solver::rotor::unbalance::{Orbit, Unbalance};
-use bearing_dynamics::solver::rotor::whirl::Whirl;
+use bearing_dynamics::members::beam::{Beam, BeamDisc};
+use bearing_dynamics::vibrations::critical_speeds::Critical;
+use bearing_dynamics::vibrations::rotor::{Held, Rotor, RotorError, RotorModel, Support};
+use bearing_dynamics::vibrations::unbalance_response::{Orbit, Unbalance};
+use bearing_dynamics::vibrations::whirl::Whirl;
 use nalgebra::{Complex, Matrix4};
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
 //! Quantities, courses and dimensions that a scene gives.
 
 mod units {
-    use bearing_dynamics::scene::units::*;
+    use bearing_dynamics::scene::text::units::*;
     use std::f64::consts::PI;
 
     fn si(text: &str, dimension: Dimension) -> f64 {
@@ -48,8 +48,8 @@ mod units {
 }
 
 mod excitations {
-    use bearing_dynamics::scene::excitations::frequency;
-    use bearing_dynamics::solver::profile::Profile;
+    use bearing_dynamics::numeric::profile::Profile;
+    use bearing_dynamics::scene::build::excitations::frequency;
 
     #[test]
     fn a_table_excites_as_fast_as_its_shortest_change() {
@@ -66,7 +66,7 @@ mod resolve_solid_mesh {
     fn dimensions_of_generators_are_keys() {
         for (_, key) in KEY_OF_DIMENSION {
             assert!(
-                bearing_dynamics::scene::keys::find(&format!("solid.mesh.{key}")).is_some(),
+                bearing_dynamics::scene::tables::keys::find(&format!("solid.mesh.{key}")).is_some(),
                 "{key}"
             );
         }

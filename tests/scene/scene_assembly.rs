@@ -1,15 +1,15 @@
 //! Scenes of several bearings: what is written where becomes what sits where.
 
 use crate::assembly_common::BEARING;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::loads::{Drive, Rotation};
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::members::connection::{Law, MaxwellElement};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::statics::static_problem;
 use bearing_dynamics::scene::{Document, Format, Scene, Subject, resolve, resolve_subject};
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::connection::{Law, MaxwellElement};
-use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 use std::f64::consts::{PI, TAU};
 
 fn document(text: &str) -> Document {
@@ -181,7 +181,7 @@ fn bodies_and_springs_are_what_their_tables_say() {
         .collect();
     let [(one, law), (other, second)] = springs[..] else { panic!("two springs") };
     // An end of which nothing is said is beside the other one: nothing is stretched where bodies stand at the origin.
-    let ends = |connection: &bearing_dynamics::solver::dynamics::connection::Connection| {
+    let ends = |connection: &bearing_dynamics::members::connection::Connection| {
         connection.ends.map(|end| (end.body, (end.along * 1e6).round()))
     };
     assert_eq!(ends(one), [(shaft, 20e3), (ground, 20e3)]);

@@ -1,11 +1,11 @@
 //! Springs that are bonded bushings, and springs that end at races.
 
 use bearing_dynamics::ch2_housing::elastomer::named;
+use bearing_dynamics::members::connection::{Law, SpringDashpot};
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
-use bearing_dynamics::scene::assembly::{AssemblyScene, SpringAt};
+use bearing_dynamics::scene::build::assembly::{AssemblyScene, SpringAt};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::dynamics::connection::{Law, SpringDashpot};
-use bearing_dynamics::solver::solid::rubber::prony::bushing_spring;
+use bearing_dynamics::solids::rubber::prony::bushing_spring;
 use std::f64::consts::TAU;
 
 const SHIPPED: &str = include_str!("../../scenes/bearing_on_bushing.toml");

@@ -1,9 +1,11 @@
 //! Defaults that the readers use are those of the key table.
 
 use super::scene_dynamics::BEARING;
-use bearing_dynamics::scene::keys::{self, Key, Kind, Need};
-use bearing_dynamics::scene::units::parse_quantity;
-use bearing_dynamics::scene::{self, Document, Format, Scene, Subject};
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::tables::keys;
+use bearing_dynamics::scene::tables::keys::{Key, Kind, Need};
+use bearing_dynamics::scene::text::units::parse_quantity;
+use bearing_dynamics::scene::{Document, Format, Scene, Subject};
 use std::path::Path;
 
 /// A default of the key table as JSON.

@@ -1,13 +1,13 @@
 //! The scene reference and the JSON Schema follow the key table.
 
-use bearing_dynamics::scene::{keys, reference, schema};
+use bearing_dynamics::scene::tables::{keys, manual, schema};
 use serde_json::Value;
 
 /// `SCENE_DOCS=write cargo test --release --test scene scene_docs` rewrites the reference.
 #[test]
 fn reference_is_current() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/scene.md");
-    let made = reference::reference_markdown();
+    let made = manual::reference_markdown();
     if std::env::var_os("SCENE_DOCS").is_some_and(|mode| mode == "write") {
         std::fs::write(path, &made).expect("docs/scene.md can be written");
     }

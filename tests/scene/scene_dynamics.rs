@@ -1,18 +1,20 @@
 //! Scenes of bearings in motion: what is written becomes what is simulated.
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::dynamics::{DynamicsError, dynamic_problem, run_options};
-use bearing_dynamics::scene::excitations::{Excitation, excitations};
-use bearing_dynamics::scene::keys::{self, Need};
-use bearing_dynamics::scene::statics::static_problem;
-use bearing_dynamics::scene::{self, CageInRun, Document, Format, RunPlot, Scene, Subject};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::run::{Integrator, Simulation, Start, Stepping};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::motion::simulation::{Integrator, Simulation, Start, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::excitations::{Excitation, excitations};
+use bearing_dynamics::scene::build::motion::{DynamicsError, dynamic_problem, run_options};
+use bearing_dynamics::scene::build::statics::static_problem;
+use bearing_dynamics::scene::tables::keys;
+use bearing_dynamics::scene::tables::keys::Need;
+use bearing_dynamics::scene::{CageInRun, Document, Format, RunPlot, Scene, Subject};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -84,7 +86,7 @@ fn the_settling_scene_runs_into_its_static_equilibrium() {
     assert_eq!((run.end, run.output_interval, run.window_start), (0.2, 2e-4, 0.1));
     assert_eq!(run.options.start, Start::Nominal);
     assert_eq!(run.options.stepping, Stepping::Fixed(1e-6));
-    let at_rest = bearing_dynamics::solver::statics::solve(&static_problem(&scene).unwrap());
+    let at_rest = bearing_dynamics::equilibrium::statics::solve(&static_problem(&scene).unwrap());
     let expected = at_rest.unwrap().coordinates[0];
     let mut simulation = Simulation::new(problem, run.options).unwrap();
     while simulation.time < run.end {

@@ -1,6 +1,7 @@
 //! Malformed scenes of bearings in motion: one message each, with line, allowed range or hint.
 
-use bearing_dynamics::scene::{self, Format};
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::Format;
 use std::fmt::Write as _;
 
 /// A correct scene; every case below changes one line of it.
@@ -160,7 +161,7 @@ unbalance = "9000 g mm""#, 29, &["inner_race.unbalance", "more than a body of 0.
 #[test]
 fn the_scene_that_the_cases_change_is_correct() {
     let scene = scene::read_str(GOOD, Format::Toml, "good").unwrap();
-    scene::dynamics::dynamic_problem(&scene).unwrap();
+    scene::build::motion::dynamic_problem(&scene).unwrap();
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Malformed scenes: each gives one message with file, line and column (where a line exists), the
 //! allowed range or a hint, and the wording is kept in a snapshot to be reviewed.
 
-use bearing_dynamics::scene::{self, Document, Format};
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::{Document, Format};
 use std::fmt::Write as _;
 use std::io::{Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};

@@ -5,15 +5,17 @@
 
 use crate::fuzz_common;
 
+use bearing_dynamics::assembly::loads::{Drive, Rotation};
 use bearing_dynamics::ch2_housing::bearing::traction::coefficient;
-use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
-use bearing_dynamics::scene::keys::{self, Kind};
-use bearing_dynamics::scene::units::Dimension;
-use bearing_dynamics::scene::{self, Document, Format, Scene, SceneError};
-use bearing_dynamics::solver::dynamics::model::{Drive, Rotation};
-use bearing_dynamics::solver::dynamics::run::Stepping;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::motion::simulation::Stepping;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::build::motion::{dynamic_problem, run_options};
+use bearing_dynamics::scene::tables::keys;
+use bearing_dynamics::scene::tables::keys::Kind;
+use bearing_dynamics::scene::text::units::Dimension;
+use bearing_dynamics::scene::{Document, Format, Scene, SceneError};
 use fuzz_common::Random;
 use std::collections::HashSet;
 use std::panic::catch_unwind;

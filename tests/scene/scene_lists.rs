@@ -1,6 +1,6 @@
 //! Keys of lists of tables, by their numbers.
 
-use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 use std::path::Path;
 

@@ -2,9 +2,11 @@
 
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingKind, ClearanceThrough, Material};
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzModel;
-use bearing_dynamics::scene::keys::{self, Kind, Need};
-use bearing_dynamics::scene::{self, Document, Format, Plot, Scene, Subject};
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::tables::keys;
+use bearing_dynamics::scene::tables::keys::{Kind, Need};
+use bearing_dynamics::scene::{Document, Format, Plot, Scene, Subject};
 use std::path::{Path, PathBuf};
 
 fn shipped(name: &str) -> PathBuf {

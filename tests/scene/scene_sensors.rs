@@ -1,9 +1,9 @@
 //! Sensors: what they sit on, what they need, and what is refused.
 
 use bearing_dynamics::ch5_cage::telemeter::{copper_resistance, natural_frequency};
-use bearing_dynamics::scene::sensors::{Direction, SceneSensorKind, SensorAt};
+use bearing_dynamics::members::sensor::SensorKind;
+use bearing_dynamics::scene::build::sensors::{Direction, SceneSensorKind, SensorAt};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::dynamics::sensor::SensorKind;
 
 const CAGED: &str = include_str!("../../scenes/cage_telemeter.toml");
 const SHAFT: &str = include_str!("../../scenes/shaft_in_two_housings.toml");

@@ -1,9 +1,9 @@
 //! A body of a scene that bends.
 
-use bearing_dynamics::scene::shaft_problem::take_shafts;
+use bearing_dynamics::assembly::lists::{Assembly, Body};
+use bearing_dynamics::assembly::loads::Rotation;
+use bearing_dynamics::scene::build::shaft::take_shafts;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
-use bearing_dynamics::solver::dynamics::model::Rotation;
 
 const BEARINGS: &str = r#"
 [bearing]

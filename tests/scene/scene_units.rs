@@ -1,6 +1,6 @@
 //! Units are worth what their symbols say.
 
-use bearing_dynamics::scene::units::{Dimension, parse_quantity};
+use bearing_dynamics::scene::text::units::{Dimension, parse_quantity};
 use std::f64::consts::TAU;
 
 /// Powers of kilogram, metre, second, radian and ampere.

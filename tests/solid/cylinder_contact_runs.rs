@@ -8,15 +8,13 @@ use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::vec3::{add, norm, sub};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::contact::{
-    ContactError, ContactRun, CylinderContact, CylinderPath,
-};
-use bearing_dynamics::solver::solid::equilibrium::{
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::contact::{ContactError, ContactRun, CylinderContact, CylinderPath};
+use bearing_dynamics::solids::equilibrium::{
     EquilibriumError, EquilibriumOptions, equilibrium, equilibrium_in_contact,
 };
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{Prescribed, SolidModel, SolidProblem};
 
 /// A steel block of 20 × 10 × 10 mm, its top at z = 0.
 fn block(order: Order) -> (TetMesh, SolidProblem, Vec<ContactNode>) {

@@ -11,17 +11,15 @@ use bearing_dynamics::elements::tet10::POINTS;
 use bearing_dynamics::elements::tet10_nodal::{at_corners, strains};
 use bearing_dynamics::kinematics::vec3::{Vec3, cross};
 use bearing_dynamics::mesh::generate::bushing;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::rubber::bar::Bar;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::model::{
-    Moment, RubberModel, RubberProblem, supports,
-};
-use bearing_dynamics::solver::solid::rubber::steps::RubberSolid;
-use bearing_dynamics::solver::solid::rubber::tangent::{StepLaw, Tangent, add_forces};
-use bearing_dynamics::solver::solid::tangent::PRESCRIBED;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::solids::rubber::bar::Bar;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::model::{Moment, RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::steps::RubberSolid;
+use bearing_dynamics::solids::rubber::tangent::{StepLaw, Tangent, add_forces};
+use bearing_dynamics::solids::tangent::PRESCRIBED;
 use std::f64::consts::TAU;
 
 /// A free cube of shaken elements, and displacements without pattern, small against a cell.

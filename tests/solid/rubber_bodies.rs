@@ -5,10 +5,10 @@ use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChai
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bar, bushing};
 use bearing_dynamics::mesh::{Elements, TetMesh};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::steps::{StepOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::steps::{StepOptions, Stepping};
 
 pub const HELD: Option<Profile> = Some(Profile::ZERO);
 

@@ -4,11 +4,11 @@ use super::rubber_bodies::{BUSHING, HELD, bonded, quadratic, static_stiffness, w
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::holds::{holds, lever, stiffness};
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::holds::{holds, lever, stiffness};
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
 use std::f64::consts::TAU;
 
 /// The bushing of 3.3: at 1 mm across relaxed rubber pushes back by 1.57 % more than in proportion, by implicit steps on a

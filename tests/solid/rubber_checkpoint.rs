@@ -1,20 +1,20 @@
 //! Steps of rubber that go on from a checkpoint, what they do by their plan, and the stresses that they leave.
 
+use bearing_dynamics::assembly::plan::counts::{Counts, StageCounts};
+use bearing_dynamics::assembly::plan::rubber::{Method, items};
+use bearing_dynamics::assembly::plan::{Item, counted};
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, named};
 use bearing_dynamics::elements::tet10::POINTS;
 use bearing_dynamics::mesh::Elements;
 use bearing_dynamics::mesh::generate::bar;
-use bearing_dynamics::solver::plan::rubber::{Method, items};
-use bearing_dynamics::solver::plan::tally::{Ran, Tally};
-use bearing_dynamics::solver::plan::{Item, counted};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::Load;
-use bearing_dynamics::solver::solid::rubber::checkpoint::RubberCheckpoint;
-use bearing_dynamics::solver::solid::rubber::measures::{point_stresses, stresses};
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
-use bearing_dynamics::solver::solid::rubber::vibration::vibrations;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::model::Load;
+use bearing_dynamics::solids::rubber::checkpoint::RubberCheckpoint;
+use bearing_dynamics::solids::rubber::measures::{point_stresses, stresses};
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::relaxed::relaxed;
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solids::rubber::vibration::vibrations;
 
 const HELD: Option<Profile> = Some(Profile::ZERO);
 
@@ -87,8 +87,8 @@ fn steps_from_a_checkpoint_have_the_same_bits() {
     assert_eq!(nothing, None);
 }
 
-fn check(what: &str, plan: &[Item], ran: Tally) {
-    let ran = Ran { solids: vec![ran], ..Ran::default() };
+fn check(what: &str, plan: &[Item], ran: Counts) {
+    let ran = StageCounts { solids: vec![ran], ..StageCounts::default() };
     for of in counted(plan, &ran) {
         assert_eq!(of.ran > 0, of.does, "{what}: {of:?}");
     }

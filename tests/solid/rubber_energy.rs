@@ -3,9 +3,9 @@
 use super::rubber_bodies::{bonded, fixed, network, pulled_cube, rubber_of};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::named;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::measures::RubberLedger;
-use bearing_dynamics::solver::solid::rubber::steps::RubberSolid;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::measures::RubberLedger;
+use bearing_dynamics::solids::rubber::steps::RubberSolid;
 
 fn ledger(solid: &RubberSolid) -> RubberLedger {
     RubberLedger::of(solid.model(), solid.state()).unwrap()

@@ -4,11 +4,11 @@ use super::rubber_bodies::{HELD, bonded, cube, fixed, quadratic, rubber_of};
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::named;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::error::{RubberError, StepFailure};
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed};
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepCounts};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::error::{RubberError, StepFailure};
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::relaxed::{RelaxedError, relaxed};
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepCounts};
 
 const SIDE: f64 = 0.012;
 const STEPS: u32 = 80;

@@ -8,14 +8,14 @@ use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChai
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, ElastomerError, named};
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::Load;
-use bearing_dynamics::solver::solid::rubber::bar::Bar;
-use bearing_dynamics::solver::solid::rubber::checkpoint::RubberCheckpoint;
-use bearing_dynamics::solver::solid::rubber::error::{RubberError, StepFailure};
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::model::Load;
+use bearing_dynamics::solids::rubber::bar::Bar;
+use bearing_dynamics::solids::rubber::checkpoint::RubberCheckpoint;
+use bearing_dynamics::solids::rubber::error::{RubberError, StepFailure};
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
 const SIDE: f64 = 0.012;
 

@@ -3,12 +3,12 @@
 use crate::rubber_bodies::{bonded, bushing_mesh, network, rubber_of, scatter};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::named;
+use bearing_dynamics::members::connection::SpringDashpot;
 use bearing_dynamics::mesh::generate::Part;
-use bearing_dynamics::solver::dynamics::connection::SpringDashpot;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::prony::{bushing_spring, nonnegative};
-use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::prony::{bushing_spring, nonnegative};
+use bearing_dynamics::solids::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 

@@ -7,9 +7,9 @@ use bearing_dynamics::ch3_bushing::hysteresis::{
     Hysteresis, of_complex_stiffness, of_loop, of_steps,
 };
 use bearing_dynamics::kinematics::strain::{Sym3, double_dot};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use std::f64::consts::TAU;
 
 /// A cycle in steps tends with second order to what the complex stiffness says.

@@ -89,9 +89,9 @@ mod langevin {
 
 mod support {
     use bearing_dynamics::mesh::generate::bar;
-    use bearing_dynamics::solver::profile::Profile;
-    use bearing_dynamics::solver::solid::model::Prescribed;
-    use bearing_dynamics::solver::solid::support::*;
+    use bearing_dynamics::numeric::profile::Profile;
+    use bearing_dynamics::solids::model::Prescribed;
+    use bearing_dynamics::solids::support::*;
 
     fn held(components: &[(usize, f64)]) -> FreeMotions {
         let mesh = bar([0.1, 0.01, 0.01], [4, 2, 2]).unwrap().mesh;

@@ -4,16 +4,16 @@ use crate::solid_common;
 
 use bearing_dynamics::kinematics::vec3::{Vec3, cross};
 use bearing_dynamics::mesh::tet_mesh::Order;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::energy::strain_energy;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::energy::strain_energy;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{
     DampedMotion, Load, Prescribed, SolidError, SolidModel, SolidProblem,
 };
-use bearing_dynamics::solver::solid::step_limit::{step_limit, step_limit_within};
-use bearing_dynamics::solver::solid::tangent::MassMatrix;
-use bearing_dynamics::solver::solid::team::Crew;
+use bearing_dynamics::solids::step_limit::{step_limit, step_limit_within};
+use bearing_dynamics::solids::tangent::MassMatrix;
+use bearing_dynamics::solids::threads::WorkerPool;
 use proptest::prelude::*;
 use solid_common::{DENSITY, cut_cubes, solid};
 
@@ -380,7 +380,7 @@ fn threads_change_no_bit() {
         }
         for threads in [2, 3] {
             let mut shared = make();
-            shared.share(&Crew::new(threads), threads);
+            shared.share(&WorkerPool::new(threads), threads);
             assert!(shared.elements_a_step() > shared.model.problem.elements.len());
             for _ in 0..30 {
                 shared.step(|_, _, _| {}).unwrap();

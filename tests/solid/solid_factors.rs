@@ -4,19 +4,17 @@ use crate::solid_common;
 
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::Order;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
-use bearing_dynamics::solver::solid::memory;
-use bearing_dynamics::solver::solid::model::{Load, Prescribed, SolidModel};
-use bearing_dynamics::solver::solid::tangent::{
-    PRESCRIBED, Unknowns, mass_pattern, pattern, stiffness,
-};
-use bearing_dynamics::solver::sparse::dissection::nested_dissection;
-use bearing_dynamics::solver::sparse::graph::Graph;
-use bearing_dynamics::solver::sparse::separator::{Side, smallest_cuts};
-use bearing_dynamics::solver::sparse::{
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::numeric::sparse::dissection::nested_dissection;
+use bearing_dynamics::numeric::sparse::graph::Graph;
+use bearing_dynamics::numeric::sparse::separator::{Side, smallest_cuts};
+use bearing_dynamics::numeric::sparse::{
     Entry, FactorError, Memory, Ordering, SymmetricMatrix, Task,
 };
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_over};
+use bearing_dynamics::solids::memory;
+use bearing_dynamics::solids::model::{Load, Prescribed, SolidModel};
+use bearing_dynamics::solids::tangent::{PRESCRIBED, Unknowns, mass_pattern, pattern, stiffness};
 use solid_common::{cut_cubes, solid};
 use std::collections::BTreeSet;
 

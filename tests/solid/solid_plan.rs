@@ -2,15 +2,15 @@
 
 use crate::solid_common;
 
+use bearing_dynamics::assembly::plan::counts::{Counts, StageCounts};
+use bearing_dynamics::assembly::plan::solid::{Method, items};
+use bearing_dynamics::assembly::plan::{Item, Stage, Subject, counted};
 use bearing_dynamics::mesh::tet_mesh::Order;
-use bearing_dynamics::solver::plan::solid::{Method, items};
-use bearing_dynamics::solver::plan::tally::{Ran, Tally};
-use bearing_dynamics::solver::plan::{Item, Stage, Subject, counted};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{Load, Prescribed, SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{Load, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solids::modes::{ModeOptions, modes};
 use solid_common::{cut_cubes, solid};
 
 /// A block that stands on its nodes at x = 0, with a load, weight and damping.
@@ -30,8 +30,8 @@ fn everything(order: Order) -> SolidProblem {
     all
 }
 
-fn check(what: &str, plan: &[Item], ran: Tally) {
-    let ran = Ran { solids: vec![ran], ..Ran::default() };
+fn check(what: &str, plan: &[Item], ran: Counts) {
+    let ran = StageCounts { solids: vec![ran], ..StageCounts::default() };
     for of in counted(plan, &ran) {
         assert_eq!(of.ran > 0, of.does, "{what}: {of:?}");
     }

@@ -6,15 +6,13 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::strain::{Sym3, full};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{
-    EquilibriumError, EquilibriumOptions, equilibrium,
-};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{Load, Prescribed, SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
-use bearing_dynamics::solver::solid::tangent::MassMatrix;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::equilibrium::{EquilibriumError, EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{Load, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solids::modes::{ModeOptions, modes};
+use bearing_dynamics::solids::stress::nodal_stresses;
+use bearing_dynamics::solids::tangent::MassMatrix;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use solid_common::{DENSITY, YOUNG, cut_cubes, solid};
 
@@ -188,7 +186,7 @@ fn a_load_that_is_far_too_large_is_called_so() {
     assert!(pivot.node.is_some() && pivot.at[0] > 0.0, "{pivot}");
     assert!(said.contains("no part is free to move: the load is too large"), "{said}");
     assert!(said.contains(&format!("({pivot})")) && !said.contains("(pivot "), "{said}");
-    let millimetres = bearing_dynamics::solver::clock::to_digits(1e3 * linear.value, 4);
+    let millimetres = bearing_dynamics::numeric::clock::to_digits(1e3 * linear.value, 4);
     assert!(said.contains(&format!("would move it by {millimetres} mm")), "{said}");
 }
 

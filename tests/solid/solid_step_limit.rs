@@ -7,12 +7,12 @@ use crate::solid_common;
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::contact::closed_limit;
-use bearing_dynamics::solver::solid::explicit::ExplicitMethod;
-use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::step_limit::{step_limit, step_limit_within};
-use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns, mass, pattern};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::contact::closed_limit;
+use bearing_dynamics::solids::explicit::ExplicitMethod;
+use bearing_dynamics::solids::model::{Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solids::step_limit::{step_limit, step_limit_within};
+use bearing_dynamics::solids::tangent::{MassMatrix, Unknowns, mass, pattern};
 use nalgebra::{DMatrix, Rotation3, Vector3};
 use solid_common::{cut_cubes, solid};
 

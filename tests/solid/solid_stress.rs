@@ -6,11 +6,11 @@ use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::node_order::EDGES;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
-use bearing_dynamics::solver::solid::energy::strain_energy;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::stress::{element_stresses, nodal_stresses, point_stresses};
-use bearing_dynamics::solver::solid::trust::energy_error;
+use bearing_dynamics::solids::energy::strain_energy;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::model::{SolidModel, SolidProblem};
+use bearing_dynamics::solids::stress::{element_stresses, nodal_stresses, point_stresses};
+use bearing_dynamics::solids::trust::energy_error;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 const POISSON: f64 = 0.3;

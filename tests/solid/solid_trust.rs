@@ -5,10 +5,10 @@ use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::layers::thinnest_wall;
 use bearing_dynamics::mesh::tet_mesh::Order;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
-use bearing_dynamics::solver::solid::trust::{at_most, energy_error};
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::stress::nodal_stresses;
+use bearing_dynamics::solids::trust::{at_most, energy_error};
 
 /// A bar clamped at one end with a load of 1 N on the other: the mean displacement along the load, m, what the
 /// estimate says is missing of it, and elements through the thinnest wall.

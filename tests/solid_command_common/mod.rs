@@ -104,13 +104,13 @@ density = "7850 kg/m^3"
 }
 
 pub const ON_ROLLERS: &str = r#"
-[[solid.held]]
+[[solid.fixed]]
 set = "x_low"
 x = true
-[[solid.held]]
+[[solid.fixed]]
 set = "y_low"
 y = true
-[[solid.held]]
+[[solid.fixed]]
 set = "z_low"
 z = true
 [[solid.probe]]
@@ -128,7 +128,7 @@ outer_radius = "25 mm"
 width = "10 mm"
 cells = { around = 24, radial = 2, axial = 2 }
 order = 1
-[[solid.held]]
+[[solid.fixed]]
 set = "x_low"
 x = true
 y = true

@@ -6,8 +6,8 @@ use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::mesh::measure::{Share, tributary_areas};
 use bearing_dynamics::mesh::quadratic::elevate;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{DampedMotion, Load, Prescribed, SolidProblem};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::model::{DampedMotion, Load, Prescribed, SolidProblem};
 
 pub const YOUNG: f64 = 2.1e11;
 pub const DENSITY: f64 = 7800.0;

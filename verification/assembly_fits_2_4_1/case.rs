@@ -2,10 +2,10 @@
 
 use bearing_dynamics::kinematics::strain::von_mises;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
+use bearing_dynamics::solids::bore_equilibrium::BoreState;
+use bearing_dynamics::solids::stress::nodal_stresses;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

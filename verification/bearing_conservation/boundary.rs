@@ -1,11 +1,11 @@
 //! The largest stable step: predicted from the Jacobian, from a closed form, and observed.
 
+use bearing_dynamics::assembly::loads::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::Simulation;
-use bearing_dynamics::solver::dynamics::stability::{StepLimit, step_limit};
-use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::Simulation;
+use bearing_dynamics::motion::stability::{StepLimit, step_limit};
+use bearing_dynamics::motion::system::System;
 
 use super::{deep_groove, difference, oracle, preloaded, simulation, velocities};
 use crate::bearings::{self, Hertz};
@@ -43,7 +43,7 @@ fn boundary(problem: &DynamicProblem) -> Result<(StepLimit, f64), CaseError> {
     let mut settled = Simulation::new(problem.clone(), motion::fixed_step(0.1e-6))?;
     motion::run(&mut settled, 10_000)?;
     let state = settled.state;
-    let mut system = System::new(problem.clone(), Driver::Lanes);
+    let mut system = System::new(problem.clone(), Kernel::Simd);
     let limit = step_limit(&mut system, 0.0, &state)
         .ok_or_else(|| CaseError::message("nothing limits the step"))?;
     let (mut low, mut high) = (0.6 * limit.step, 1.7 * limit.step);
@@ -112,7 +112,7 @@ pub(super) fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 fn closed_form(context: &mut CaseContext) -> Result<(), CaseError> {
     let problem = preloaded()?;
     let lengths = deep_groove(-20e-6);
-    let mut system = System::new(problem.clone(), Driver::Lanes);
+    let mut system = System::new(problem.clone(), Kernel::Simd);
     let still = Simulation::new(problem.clone(), motion::fixed_step(1e-6))?;
     let limit = step_limit(&mut system, 0.0, &still.state)
         .ok_or_else(|| CaseError::message("nothing limits the step"))?;

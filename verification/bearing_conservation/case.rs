@@ -1,16 +1,16 @@
 //! What a bearing in motion conserves, and how closely the integration in time keeps it.
 
+use bearing_dynamics::assembly::loads::{CageBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::inertia;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Start};
+use bearing_dynamics::motion::stability::step_limit;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::model::{CageBody, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, Start};
-use bearing_dynamics::solver::dynamics::stability::step_limit;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{BodyState, Layout, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
-use bearing_dynamics::solver::profile::Profile;
 
 use crate::bearings::{DEEP_GROOVE, Lengths};
 use crate::case::{Case, CaseError, Tier};
@@ -195,7 +195,7 @@ fn tops(context: &mut CaseContext) -> Result<(), CaseError> {
 fn energy_drift(context: &mut CaseContext) -> Result<(), CaseError> {
     let problem = preloaded()?;
     let state = preloaded_start(&problem);
-    let mut system = System::new(problem.clone(), Driver::Lanes);
+    let mut system = System::new(problem.clone(), Kernel::Simd);
     let pulsation = step_limit(&mut system, 0.0, &state)
         .ok_or_else(|| CaseError::message("no contact is stiff"))?
         .eigenvalue

@@ -1,11 +1,11 @@
 //! Order of the integration: four on smooth motion, five halves where contacts make and break.
 
+use bearing_dynamics::assembly::loads::{DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{Layout, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::model::{DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, VELOCITY};
-use bearing_dynamics::solver::profile::Profile;
 
 use super::{difference, oracle, order, preloaded, preloaded_start, simulation, velocities};
 use crate::case::CaseError;

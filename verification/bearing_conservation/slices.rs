@@ -2,12 +2,12 @@
 
 use core::f64::consts::PI;
 
+use bearing_dynamics::assembly::state::{Layout, SPIN};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::system::System;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::contacts::Driver;
-use bearing_dynamics::solver::dynamics::start;
-use bearing_dynamics::solver::dynamics::state::{Layout, SPIN};
-use bearing_dynamics::solver::dynamics::system::System;
 
 use super::deep_groove;
 use crate::bearings::DEEP_GROOVE;
@@ -100,7 +100,7 @@ fn braking(slices: usize, points_across: usize) -> Result<f64, CaseError> {
     ball.spin = [0.0, 40.0 * cos, 40.0 * sin];
     layout.set_ball(&mut state, 0, &ball);
     let inertia = problem.ball.axial;
-    let mut system = System::new(problem, Driver::Lanes);
+    let mut system = System::new(problem, Kernel::Simd);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, &state, &mut rates);
     let [_, y, z] = layout.ball_vector(&rates, SPIN, 0);

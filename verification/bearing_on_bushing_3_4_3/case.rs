@@ -2,9 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use nalgebra::Complex;
 
 use crate::bushings::{

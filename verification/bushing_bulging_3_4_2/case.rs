@@ -4,10 +4,10 @@
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::mesh::generate::{Bushing, Part};
 use bearing_dynamics::mesh::{Elements, TetMesh};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
-use bearing_dynamics::solver::solid::rubber::steps::Stepping;
+use bearing_dynamics::solids::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
+use bearing_dynamics::solids::rubber::steps::Stepping;
 
 use crate::bushings::{
     BUSHING, MODULUS, Moved, bonded, exact, order, quarter, rubber, section, shear_over_modulus,

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch3_bushing::similitude::Scale;
 use bearing_dynamics::mesh::generate::Bushing;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
 
 use crate::bushings::{MODULUS, bonded, exact, of_quarter, order, quarter, rubber};
 use crate::case::{Case, CaseError, Tier};

@@ -8,10 +8,10 @@ use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch3_bushing::hysteresis::{Hysteresis, of_loop};
 use bearing_dynamics::ch3_bushing::similitude::Scale;
 use bearing_dynamics::mesh::TetMesh;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::steps::Stepping;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::steps::Stepping;
 
 use crate::bushings::{
     BUSHING_3_3, MAXWELL, MODULUS, Moved, SteadyLoop, bonded, exact, of_quarter, order, quarter,

@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch3_bushing::hysteresis::Hysteresis;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
 
 use crate::bushings::{
     BUSHING, MODULUS, bonded, complex_factor, exact, four_nodes, of_quarter, quarter, rubber,

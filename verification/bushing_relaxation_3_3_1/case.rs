@@ -1,8 +1,8 @@
 //! A bonded bushing moved by 1 mm and held, at finite strain in implicit steps.
 
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::steps::Stepping;
+use bearing_dynamics::solids::rubber::steps::Stepping;
 
 use crate::bushings::{BUSHING_3_3, Moved, bonded, quarter, rubber_of_3_3};
 use crate::case::{Case, CaseError, Tier};

@@ -3,17 +3,17 @@
 
 use std::f64::consts::{PI, TAU};
 
+use bearing_dynamics::assembly::plan::counts::Counts;
 use bearing_dynamics::ch3_bushing::hysteresis::of_loop;
+use bearing_dynamics::motion::simulation::RunOptions;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::session::{Motion, Parts, RubberParts, RunRequest, Session, Status};
-use bearing_dynamics::scene::rubber_problem::{RubberSetup, rubber_setup, vibrating};
-use bearing_dynamics::scene::solid::{Law, RunSteps, SolidRun};
-use bearing_dynamics::scene::solid_mesh::build;
+use bearing_dynamics::scene::build::rubber::{RubberSetup, rubber_setup, vibrating};
+use bearing_dynamics::scene::build::solid_mesh::build;
+use bearing_dynamics::scene::resolve::solid_scene::{Law, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::solid::rubber::relaxed::relaxed;
-use bearing_dynamics::solver::solid::rubber::vibration::vibrations;
+use bearing_dynamics::solids::rubber::relaxed::relaxed;
+use bearing_dynamics::solids::rubber::vibration::vibrations;
 use nalgebra::Complex;
 
 use crate::bushings::{
@@ -62,7 +62,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.work("unknowns", setup.model.unknowns.count as u64);
     let asked = rubber.harmonic.as_ref().ok_or_else(|| CaseError::message("no vibrations"))?;
     let model = vibrating(&setup, asked)?;
-    let answers = vibrations(&model, &asked.frequencies, &mut Tally::default())?;
+    let answers = vibrations(&model, &asked.frequencies, &mut Counts::default())?;
     for answer in answers.iter().filter(|answer| [0.0, FREQUENCY].contains(&answer.frequency)) {
         let exact = stiffness(C::new(0.0, TAU * answer.frequency));
         let of = answer.hysteresis;

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::mesh::generate::{Bushing, Part};
-use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
+use bearing_dynamics::solids::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
 
 use crate::bushings::{
     BEARING_ON_BUSHING, BULK_RATIO, BUSHING, BUSHING_3_3, MODULUS, complex_shear, quarter, rubber,

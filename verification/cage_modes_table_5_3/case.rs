@@ -4,9 +4,9 @@
 use bearing_dynamics::mesh::generate::{Cage, CageMesh, RailRelief, Solid};
 use bearing_dynamics::mesh::measure::total_volume;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::modes::{Mode, ModeOptions, modes};
-use bearing_dynamics::solver::solid::tangent::MassMatrix;
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::modes::{Mode, ModeOptions, modes};
+use bearing_dynamics::solids::tangent::MassMatrix;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};

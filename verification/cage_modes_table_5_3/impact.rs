@@ -3,11 +3,11 @@
 
 use bearing_dynamics::mesh::generate::CageMesh;
 use bearing_dynamics::mesh::{Order, TetMesh};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::spectrum::{Spectrum, spectrum};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{Load, SolidModel, SolidProblem};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{Load, SolidModel, SolidProblem};
 
 use super::{bending_pairs, lumped_modes};
 use crate::case::CaseError;

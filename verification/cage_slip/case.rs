@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::assembly::state::{Layout, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::CageForce;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::dynamics::state::{Layout, SPIN, VELOCITY};
-use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Stepping};
+use bearing_dynamics::motion::system::System;
 
 use crate::cage_bearing::{
     self, INTERVAL, Motion, kinematics, nominal_ratio, rolling, scale_traction, set_load, simulate,

@@ -5,12 +5,10 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::measure::{Share, tributary_areas};
 use bearing_dynamics::mesh::read::{LengthUnit, read_gmsh};
 use bearing_dynamics::mesh::{Elements, TetMesh};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{
-    DampedMotion, Load, Prescribed, SolidModel, SolidProblem,
-};
-use bearing_dynamics::solver::solid::modes::{ModeOptions, Modes, modes};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::model::{DampedMotion, Load, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solids::modes::{ModeOptions, Modes, modes};
 use std::ops::Range;
 
 use crate::case::{Case, CaseError, Tier};

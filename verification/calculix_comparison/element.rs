@@ -1,8 +1,8 @@
 //! Stiffness and mass of single elements, entry by entry.
 
 use bearing_dynamics::mesh::Elements;
-use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns, mass, pattern, stiffness};
-use bearing_dynamics::solver::sparse::SymmetricMatrix;
+use bearing_dynamics::numeric::sparse::SymmetricMatrix;
+use bearing_dynamics::solids::tangent::{MassMatrix, Unknowns, mass, pattern, stiffness};
 use nalgebra::DMatrix;
 
 use super::{

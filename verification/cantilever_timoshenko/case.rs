@@ -2,10 +2,10 @@
 
 use bearing_dynamics::kinematics::strain::von_mises;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::modes::{Mode, ModeOptions, modes};
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::model::{SolidModel, SolidProblem};
+use bearing_dynamics::solids::modes::{Mode, ModeOptions, modes};
+use bearing_dynamics::solids::stress::nodal_stresses;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

@@ -1,9 +1,9 @@
 //! The steady critical speed of 4.3.4's rotor, and what a run-up does to it.
 
+use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
-use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorModel};
-use bearing_dynamics::solver::rotor::unbalance::Unbalance;
+use bearing_dynamics::vibrations::rotor::{Held, Rotor, RotorModel};
+use bearing_dynamics::vibrations::unbalance_response::Unbalance;
 use std::f64::consts::PI;
 
 use crate::case::{Case, CaseError, Tier};

@@ -5,10 +5,10 @@ use bearing_dynamics::ch2_housing::bore_contact::{
 };
 use bearing_dynamics::kinematics::strain::von_mises;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
+use bearing_dynamics::solids::stress::nodal_stresses;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};

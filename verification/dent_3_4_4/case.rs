@@ -1,10 +1,10 @@
 //! Balls over a dent of the outer race, which is fixed or sits in a bushing, from the shipped scene.
 
 use bearing_dynamics::ch3_bushing::dent::dented_load;
+use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::spectrum::spectrum;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::solver::dynamics::run::Simulation;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 
 use crate::bearings::DEEP_GROOVE;
 use crate::bushings::{DENTED_RACE, MODULUS, diluted, order};

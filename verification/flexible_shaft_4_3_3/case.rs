@@ -1,18 +1,18 @@
 //! Tables 4.2 and 4.3 with fixed outer races: a beam on two bearings at rest.
 
-use bearing_dynamics::ch4_rotor::beam::ShearCoefficient;
-use bearing_dynamics::kinematics::Pose;
-use bearing_dynamics::mesh::Order;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamSegment};
-use bearing_dynamics::solver::rotor::meshed::ShaftMesh;
-use bearing_dynamics::solver::shaft_shapes::{Kept, RigidPart, ShaftShapes, free_shaft};
-use bearing_dynamics::solver::static_assembly::{
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::static_lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSection, StaticShaft,
 };
-use bearing_dynamics::solver::statics::{
+use bearing_dynamics::ch4_rotor::beam::ShearCoefficient;
+use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, Condition, StaticOptions, solve_assembly,
 };
+use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::beam::{Beam, BeamSegment};
+use bearing_dynamics::members::shaft_modes::{Kept, RigidPart, ShaftShapes, free_shaft};
+use bearing_dynamics::mesh::Order;
+use bearing_dynamics::solids::meshed_shaft::ShaftMesh;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 

@@ -2,8 +2,8 @@
 
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::generate::{RingMesh, ring};
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::modes::{Mode, ModeOptions, modes};
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::modes::{Mode, ModeOptions, modes};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

@@ -5,11 +5,11 @@ use bearing_dynamics::elements::tet10::{POINTS, Tet10};
 use bearing_dynamics::kinematics::strain::green_lagrange;
 use bearing_dynamics::mesh::generate::shaft;
 use bearing_dynamics::mesh::{Elements, Order};
-use bearing_dynamics::scene::solid_mesh::build;
-use bearing_dynamics::scene::solid_problem::setup;
+use bearing_dynamics::scene::build::solid::setup;
+use bearing_dynamics::scene::build::solid_mesh::build;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem, corners};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{DampedMotion, SolidModel, SolidProblem, corners};
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;
 

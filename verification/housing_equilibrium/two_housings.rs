@@ -1,14 +1,14 @@
 //! A rigid shaft on two bearings in two housings, against a solution of its own.
 
-use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::kinematics::Pose;
-use bearing_dynamics::mesh::Order;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::static_assembly::{
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::static_lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSeat,
 };
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::mesh::Order;
+use bearing_dynamics::solids::condensation::CondensedBore;
 use nalgebra::{DMatrix, Vector3};
 
 use super::{Placed, STIFFNESS, apart, body};
@@ -98,10 +98,9 @@ pub(super) fn compare(context: &mut CaseContext) -> Result<(), CaseError> {
         let bore = housings::condensed(&mesh, &housings::solid(&mesh)?)?;
         let body = body(&mesh, &placed)?;
         let of: Vec<usize> = bore.nodes.iter().map(|node| node.node as usize).collect();
-        let node =
-            |(&n, node): (&usize, &bearing_dynamics::solver::housing::condensed::BoreNode)| {
-                SeatNode { place: body.nodes[n], stiffness: STIFFNESS * node.area }
-            };
+        let node = |(&n, node): (&usize, &bearing_dynamics::solids::condensation::BoreNode)| {
+            SeatNode { place: body.nodes[n], stiffness: STIFFNESS * node.area }
+        };
         nodes.push(of.iter().zip(&bore.nodes).map(node).collect::<Vec<SeatNode>>());
         compliances.push(body.compliance(&of));
         bores.push(bore);

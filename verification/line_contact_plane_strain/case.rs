@@ -3,11 +3,11 @@
 
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::contact::ContactRun;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::contact::ContactRun;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

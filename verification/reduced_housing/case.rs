@@ -2,25 +2,25 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::lists::{Assembly, OUTER};
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
+use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::members::reduced_solid::ReducedSolid;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, OUTER};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::dynamics::reduced_solid::ReducedSolid;
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Simulation, Stepping};
-use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
-use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, Reduction, reduce};
-use bearing_dynamics::solver::housing::reduced_start::{
+use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::motion::reduced_start::{
     Housing, add_housing, ball_frequency, put_in_equilibrium,
 };
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::SolidModel;
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::solids::bore_equilibrium::BoreState;
+use bearing_dynamics::solids::condensation::CondensedBore;
+use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::reduction::{LEFT_OUT, ReduceOptions, Reduction, reduce};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
@@ -162,7 +162,7 @@ fn reduced(whole: &Whole, modes_to: f64) -> Result<Reduction, CaseError> {
         &whole.bore,
         penalty,
         &housings::fit(TIGHT),
-        &Hardest { force: BLOW, ..Hardest::default() },
+        &LargestLoads { force: BLOW, ..LargestLoads::default() },
     )?;
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
     Ok(reduce(&whole.model, &whole.bore, penalty, &loads, &options)?)

@@ -2,10 +2,10 @@
 
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::generate::bar;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{Load, SolidModel};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{Load, SolidModel};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

@@ -2,9 +2,9 @@
 
 use std::process::Command;
 
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
-use bearing_dynamics::solver::rotor::model::{Rotor, RotorModel, Support};
-use bearing_dynamics::solver::rotor::unbalance::Unbalance;
+use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
+use bearing_dynamics::vibrations::rotor::{Rotor, RotorModel, Support};
+use bearing_dynamics::vibrations::unbalance_response::Unbalance;
 use nalgebra::Matrix4;
 use serde::Deserialize;
 

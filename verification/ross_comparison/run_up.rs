@@ -1,9 +1,9 @@
 //! The rotor from rest through its first critical speed, by the program and by ROSS' Newmark steps.
 
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Start, Stepping};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::session::RunRequest;
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Start, Stepping};
 use serde::Deserialize;
 
 use crate::case::CaseError;

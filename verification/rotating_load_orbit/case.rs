@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::loads::RotatingLoad;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::motion::simulation::Simulation;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, OrbitPlot, Style, XyPlot, orbit, xy};
-use bearing_dynamics::solver::dynamics::model::RotatingLoad;
-use bearing_dynamics::solver::dynamics::run::Simulation;
-use bearing_dynamics::solver::profile::Profile;
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths};
 use crate::case::{Case, CaseError, Tier};

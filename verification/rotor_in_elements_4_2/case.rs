@@ -2,8 +2,8 @@
 
 use bearing_dynamics::output::series::Series;
 use bearing_dynamics::output::session::{HousedParts, Motion, Parts, Session};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::shaft_problem::take_shafts;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::shaft::take_shafts;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

@@ -1,10 +1,10 @@
 //! The system of 4.3 at rest and at 1000 rpm: a shaft that bends on two bearings in two pillow blocks.
 
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::static_lists::Place;
+use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::output::series::Series;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::course_search::CourseSearch;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::static_assembly::Place;
+use bearing_dynamics::solids::condensation::CondensedBore;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
@@ -14,7 +14,7 @@ use crate::housed_shaft::Shaft;
 use crate::housings::assumptions;
 use crate::motion::{ROTOR_IN_PILLOW_BLOCKS, changed_scene, column, done};
 use crate::solids::largest;
-use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
 
 pub const CASE: Case = Case {
     id: "rotor_in_housings_4_3",
@@ -437,7 +437,7 @@ fn at_the_same_angles(
     }
     let shafts = &course.assembly.shafts;
     let (_, mid) = shafts[0].watched.first().ok_or_else(|| CaseError::message("no section"))?;
-    let mut search = CourseSearch::of(&course.seats);
+    let mut search = WarmStartedSearch::of(&course.seats);
     let mut way = Way::default();
     for (row, time) in column(moved, "time")?.into_iter().enumerate().skip(first) {
         let mut still = course.at(time);

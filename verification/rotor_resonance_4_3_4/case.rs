@@ -1,8 +1,8 @@
 //! The rotor of 4.3.4 run up through resonance on fixed outer races and in pillow blocks.
 
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::series::Series;
-use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

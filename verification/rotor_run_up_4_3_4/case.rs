@@ -1,7 +1,7 @@
 //! The rotor of 4.3.4 from rest through its first critical speed, against half a beam in polynomials.
 
+use bearing_dynamics::motion::simulation::{Integrator, Stepping};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::run::{Integrator, Stepping};
 
 use crate::bearings::{DEEP_GROOVE, Lengths};
 use crate::case::{Case, CaseError, Tier};

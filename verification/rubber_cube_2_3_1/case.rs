@@ -5,11 +5,11 @@ use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, named};
 use bearing_dynamics::mesh::Elements;
 use bearing_dynamics::mesh::generate::bar;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::bar::Bar;
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solids::rubber::bar::Bar;
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
 use crate::bushings::{BULK_RATIO, LOCKING, MAXWELL, rubber, shear_over_modulus};
 use crate::case::{Case, CaseError, Tier};

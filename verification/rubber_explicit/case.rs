@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch3_bushing::hysteresis::of_complex_stiffness;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::explicit::{ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::rubber::explicit::{RubberBody, RubberStepLimit};
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
-use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
+use bearing_dynamics::solids::explicit::{ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::rubber::explicit::{RubberBody, RubberStepLimit};
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solids::rubber::tet_forces::MeanStress;
 
 use crate::bushings::{BULK_RATIO, BUSHING, MODULUS, bonded_tets, complex_shear, rubber, section};
 use crate::case::{Case, CaseError, Tier};

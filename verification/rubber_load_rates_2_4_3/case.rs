@@ -1,9 +1,9 @@
 //! Rates of load on a bearing in a rubber bushing, from the shipped scene: 30 s of creep, and less viscous stress.
 
+use bearing_dynamics::assembly::lists::OUTER;
+use bearing_dynamics::equilibrium::initial::at_start;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
-use bearing_dynamics::solver::dynamics::equilibrium::at_start;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use nalgebra::Complex;
 
 use crate::bushings::{BULK_RATIO, CREEP_ON_RUBBER, MAXWELL, diluted, shear_over_modulus};

@@ -3,11 +3,11 @@
 
 use bearing_dynamics::ch2_housing::elastomer::Elastomer;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::model::RubberModel;
-use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::model::RubberModel;
+use bearing_dynamics::solids::rubber::tet_forces::MeanStress;
 
 use crate::bushings::{
     BUSHING, LOCKING, MODULUS, bonded, bonded_tets, complex_shear, quarter, section,

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
+use bearing_dynamics::assembly::state::POSITION;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::motion::simulation::Simulation;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, PolarPlot, Style, XyPlot, polar, xy};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::Simulation;
-use bearing_dynamics::solver::dynamics::state::POSITION;
-use bearing_dynamics::solver::profile::Profile;
 
 use crate::bearings::{self, ANGULAR_CONTACT, DEEP_GROOVE, Hertz, Lengths};
 use crate::case::{Case, CaseError, Tier};

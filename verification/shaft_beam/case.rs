@@ -1,9 +1,9 @@
 //! Frequencies and critical speeds of beams against transfer matrices.
 
+use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
 use bearing_dynamics::output::plots;
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
-use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorModel, Support};
-use bearing_dynamics::solver::rotor::whirl::Whirl;
+use bearing_dynamics::vibrations::rotor::{Held, Rotor, RotorModel, Support};
+use bearing_dynamics::vibrations::whirl::Whirl;
 use nalgebra::Matrix4;
 
 use crate::case::{Case, CaseError, Tier};

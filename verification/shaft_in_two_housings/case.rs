@@ -3,15 +3,15 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
+use bearing_dynamics::assembly::state::VELOCITY;
+use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
+use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::session::{Motion, Parts, Session};
-use bearing_dynamics::solver::dynamics::run::Simulation;
-use bearing_dynamics::solver::dynamics::state::VELOCITY;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::course_search::CourseSearch;
-use bearing_dynamics::solver::housing::held_motions::swinging_housing;
-use bearing_dynamics::solver::housing::inertia::lowest_frequency;
-use bearing_dynamics::solver::housing::reduce::lowest_shapes;
+use bearing_dynamics::solids::condensation::CondensedBore;
+use bearing_dynamics::solids::fixed_interface_modes::swinging_housing;
+use bearing_dynamics::solids::reduction::lowest_shapes;
+use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
@@ -111,7 +111,7 @@ fn statics(context: &mut CaseContext) -> Result<(), CaseError> {
         let course = still.course(&bores)?;
         let mut lists = still.scene.statics()?;
         course.seats.iter().for_each(|seat| seat.add_to(&mut lists, 0.0));
-        let found = CourseSearch::of(&course.seats).solve(&lists)?;
+        let found = WarmStartedSearch::of(&course.seats).solve(&lists)?;
         let bodies = &course.assembly.bodies;
         for name in PLACES {
             let body = match name {
@@ -227,7 +227,7 @@ fn blow(context: &mut CaseContext) -> Result<(), CaseError> {
 /// (f/f_n)² of the blow's period and the lowest natural frequency, about the equilibrium under the largest load.
 fn frequency_ratio_squared(shaft: &Shaft, bores: &[CondensedBore]) -> Result<f64, CaseError> {
     let course = shaft.course(bores)?;
-    let mut search = CourseSearch::of(&course.seats);
+    let mut search = WarmStartedSearch::of(&course.seats);
     let found = course.find(&mut search, 0.5 * PERIOD)?;
     let bodies = course.moving();
     let mut masses = Vec::new();

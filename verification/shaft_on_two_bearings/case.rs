@@ -1,14 +1,14 @@
 //! Random shafts on two bearings each against a solver that shares nothing with the program.
 
-use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
-use bearing_dynamics::kinematics::{Pose, euler};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::static_assembly::{
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::static_lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody,
 };
-use bearing_dynamics::solver::statics::{
+use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
+use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, Condition, StaticOptions, solve_assembly,
 };
+use bearing_dynamics::kinematics::{Pose, euler};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 

@@ -2,13 +2,13 @@
 
 mod full;
 
+use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
+use bearing_dynamics::members::shaft_modes::{AttachedStation, BendingPlane, ShaftShapes};
 use bearing_dynamics::mesh::generate::shaft;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::rotor::beam::{Beam, BeamDisc, BeamSegment};
-use bearing_dynamics::solver::rotor::meshed::ShaftMesh;
-use bearing_dynamics::solver::rotor::model::{Held, Rotor, RotorModel};
-use bearing_dynamics::solver::rotor::solid::matrices;
-use bearing_dynamics::solver::shaft_shapes::{BendingPlane, Hold, ShaftShapes};
+use bearing_dynamics::solids::condensed_shaft::matrices;
+use bearing_dynamics::solids::meshed_shaft::ShaftMesh;
+use bearing_dynamics::vibrations::rotor::{Held, Rotor, RotorModel};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
@@ -279,8 +279,9 @@ fn reduced(context: &mut CaseContext, whole: &[f64]) -> Result<(), CaseError> {
     );
     let whole: Vec<f64> = whole.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let worst = |plane: &BendingPlane, natural: usize, held: bool| -> Result<f64, CaseError> {
-        let pins = [0, plane.stations.len() - 1].map(|station| Hold { station, turns: false });
-        let holds: &[Hold] = if held { &pins } else { &[] };
+        let pins =
+            [0, plane.stations.len() - 1].map(|station| AttachedStation { station, turns: false });
+        let holds: &[AttachedStation] = if held { &pins } else { &[] };
         let shapes = plane.shapes(f64::INFINITY, natural, holds)?;
         let found = between_pins(&shapes, plane);
         let off = whole.iter().enumerate().map(|(i, f)| match found.get(i) {

@@ -2,12 +2,12 @@
 
 use bearing_dynamics::ch4_rotor::section::RotorSection;
 use bearing_dynamics::mesh::TetMesh;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::rotor::solid::section;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
-use bearing_dynamics::solver::solid::modes::{Mode, ModeOptions, modes};
-use bearing_dynamics::solver::solid::tangent::{
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::condensed_shaft::section;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::model::{Prescribed, SolidModel};
+use bearing_dynamics::solids::modes::{Mode, ModeOptions, modes};
+use bearing_dynamics::solids::tangent::{
     MassMatrix, Unknowns, mass, mass_pattern, pattern, stiffness,
 };
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -96,7 +96,7 @@ pub fn pinned(mesh: &TetMesh, limit: f64) -> Result<Vec<f64>, CaseError> {
     let mut answers = holds.clone();
     factor.solve_columns(answers.as_mut_slice(), 4);
     let compliance = (holds.tr_mul(&answers)).lu();
-    let product = |of: &bearing_dynamics::solver::sparse::SymmetricMatrix, x: &DMatrix<f64>| {
+    let product = |of: &bearing_dynamics::numeric::sparse::SymmetricMatrix, x: &DMatrix<f64>| {
         let mut y = DMatrix::zeros(size, x.ncols());
         for (to, from) in
             y.as_mut_slice().chunks_exact_mut(size).zip(x.as_slice().chunks_exact(size))

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use bearing_dynamics::output::plots::{Curve, PolarPlot, polar};
-use bearing_dynamics::scene::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use nalgebra::Complex;
 
 use crate::bushings::{BEARING_ON_BUSHING, BULK_RATIO, MODULUS, shear_over_modulus};

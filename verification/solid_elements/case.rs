@@ -7,10 +7,10 @@ use bearing_dynamics::kinematics::strain::{Sym3, right_cauchy_green, von_mises};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, bar, ring};
 use bearing_dynamics::mesh::measure::total_volume;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::stress::nodal_stresses;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

@@ -3,9 +3,9 @@
 
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::generate::bar;
-use bearing_dynamics::solver::solid::energy::strain_energy;
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{DampedMotion, SolidModel, SolidProblem};
+use bearing_dynamics::solids::energy::strain_energy;
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{DampedMotion, SolidModel, SolidProblem};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

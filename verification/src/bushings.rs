@@ -2,25 +2,25 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility, OUTER};
+use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, ElastomerError};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::mesh::{Elements, TetMesh};
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body, Mobility, OUTER};
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::rubber::explicit::RubberBody;
-use bearing_dynamics::solver::solid::rubber::harmonic::ComplexStiffness;
-use bearing_dynamics::solver::solid::rubber::model::{RubberModel, RubberProblem, supports};
-use bearing_dynamics::solver::solid::rubber::sleeve::{SleeveMotion, sleeve_supports};
-use bearing_dynamics::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
-use bearing_dynamics::solver::solid::rubber::tet_forces::MeanStress;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
+use bearing_dynamics::solids::rubber::explicit::RubberBody;
+use bearing_dynamics::solids::rubber::harmonic::ComplexStiffness;
+use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::sleeve::{SleeveMotion, sleeve_supports};
+use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use bearing_dynamics::solids::rubber::tet_forces::MeanStress;
 
 use crate::case::CaseError;
 use crate::check::Check;

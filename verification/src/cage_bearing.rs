@@ -2,15 +2,16 @@
 
 use std::f64::consts::{PI, TAU};
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BODY, BodyState, Layout, POSITION};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::{self, Format};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::solver::dynamics::run::{
+use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout, POSITION};
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::Format;
+use bearing_dynamics::scene::build::motion::dynamic_problem;
 
 use crate::bearings::{self, ANGULAR_CONTACT, Hertz, Lengths};
 use crate::case::CaseError;

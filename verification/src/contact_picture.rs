@@ -54,7 +54,7 @@ pub fn contact_picture(panels: &[Panel], columns: usize) -> String {
 }
 
 /// A force on all nodes at the same Y and Z.
-struct Arrow {
+struct BlockArrowMatrix {
     /// Where the front one of them is drawn, its Y and Z, m.
     tip: [f64; 2],
     /// On Y and Z, N.
@@ -62,13 +62,14 @@ struct Arrow {
 }
 
 /// Forces summed over nodes whose undeformed Y and Z are the same to 10 nm.
-fn along_the_axis(panel: &Panel) -> Vec<Arrow> {
-    let mut sums: BTreeMap<[i64; 2], (f64, Arrow)> = BTreeMap::new();
+fn along_the_axis(panel: &Panel) -> Vec<BlockArrowMatrix> {
+    let mut sums: BTreeMap<[i64; 2], (f64, BlockArrowMatrix)> = BTreeMap::new();
     for (node, [_, on_y, on_z]) in &panel.forces {
         let ([x, y, z], u) = (panel.mesh.nodes[*node as usize], panel.displacement[*node as usize]);
         let key = [y, z].map(|x| (x * 1e8).round() as i64);
         let tip = [y + u[1], z + u[2]];
-        let (front, sum) = sums.entry(key).or_insert((x, Arrow { tip, force: [0.0; 2] }));
+        let (front, sum) =
+            sums.entry(key).or_insert((x, BlockArrowMatrix { tip, force: [0.0; 2] }));
         if x > *front {
             (*front, sum.tip) = (x, tip);
         }
@@ -96,7 +97,13 @@ pub fn outline(mesh: &TetMesh) -> Vec<Vec<u32>> {
     edges.into_values().filter(|(count, _)| *count == 1).map(|(_, run)| run).collect()
 }
 
-fn draw(svg: &mut String, panel: &Panel, forces: &[Arrow], strongest: f64, [left, top]: [f64; 2]) {
+fn draw(
+    svg: &mut String,
+    panel: &Panel,
+    forces: &[BlockArrowMatrix],
+    strongest: f64,
+    [left, top]: [f64; 2],
+) {
     let (low, high) = panel.mesh.bounding_box();
     let extent = (high[1] - low[1]).max(high[2] - low[2]);
     let scale = (SIDE - 4.0 * MARGIN) / extent;
@@ -127,7 +134,7 @@ fn draw(svg: &mut String, panel: &Panel, forces: &[Arrow], strongest: f64, [left
         }
         let _ = writeln!(svg, "<path d=\"{path}\" fill=\"none\" {style}/>");
     }
-    for Arrow { tip: [y, z], force: [on_y, on_z] } in forces {
+    for BlockArrowMatrix { tip: [y, z], force: [on_y, on_z] } in forces {
         let size = on_y.hypot(*on_z);
         let part = size / strongest;
         // Next to no force, and one that is not a number, has no arrow.

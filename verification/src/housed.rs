@@ -1,21 +1,23 @@
 //! A bearing whose outer race sits in a condensed bore, by itself: one equilibrium, and equilibria along a quasi-static
 //! sequence. The tests of housings use it too.
 
+use bearing_dynamics::assembly::loads::RotatingLoad;
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticSeat};
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::kinematics::vec3::{Vec3, add};
-use bearing_dynamics::solver::dynamics::model::RotatingLoad;
-use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, BoreState, Fit, RaceLoad};
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, placed};
-use bearing_dynamics::solver::housing::course_search::{CourseSearch, load_of_balls, unbalanced};
-use bearing_dynamics::solver::housing::inertia::MovingBody;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::static_assembly::{Loaded, Place, StaticAssembly, StaticSeat};
-use bearing_dynamics::solver::statics::{
+use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, Condition, StaticProblem, StaticSolution, StaticsError,
 };
+use bearing_dynamics::equilibrium::warm_started_search::{
+    WarmStartedSearch, load_of_balls, unbalanced,
+};
+use bearing_dynamics::kinematics::vec3::{Vec3, add};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::bore_equilibrium::{BoreSearch, BoreState, Fit, RaceLoad};
+use bearing_dynamics::solids::condensation::{CondensedBore, placed};
+use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
 use nalgebra::{DMatrix, Vector3};
 
 /// Bearing and housing in equilibrium.
@@ -37,7 +39,7 @@ pub struct HousedState {
 
 /// A search that starts from what it found last.
 pub struct HousedSearch<'b> {
-    pub search: CourseSearch<'b>,
+    pub search: WarmStartedSearch<'b>,
 }
 
 /// Bodies of the lists.
@@ -46,7 +48,7 @@ pub const OUTER: usize = 1;
 
 impl<'b> HousedSearch<'b> {
     pub fn new(bore: &'b CondensedBore, penalty: Penalty) -> HousedSearch<'b> {
-        HousedSearch { search: CourseSearch::new([(bore, penalty)]) }
+        HousedSearch { search: WarmStartedSearch::new([(bore, penalty)]) }
     }
 
     pub fn bore(&self) -> &BoreSearch<'b> {

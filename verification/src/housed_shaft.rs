@@ -1,29 +1,27 @@
 //! From a shipped scene of a shaft in housings, with words changed, to its equilibrium and what a session moves in each of three ways.
 
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::equilibrium::initial::static_assembly;
+use bearing_dynamics::equilibrium::quasi_static_sequence::{QuasiStaticFit, QuasiStaticProblem};
+use bearing_dynamics::equilibrium::statics::{AssemblySolution, StaticOptions, solve_assembly};
+use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::motion::coupling::{ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::motion::reduced_start::{Housing as Start0, add_housing, put_in_equilibrium};
+use bearing_dynamics::motion::simulation::{RunOptions, Start};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{CourseParts, HousedParts, Parts, RunRequest};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::housing::HousedScene;
-use bearing_dynamics::scene::housing_problem::{HousingSetup, setup};
-use bearing_dynamics::scene::shaft_problem::take_shafts;
-use bearing_dynamics::scene::solid_mesh::build_housing;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::equilibrium::static_assembly;
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Start};
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, condense};
-use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat};
-use bearing_dynamics::solver::housing::course_search::CourseSearch;
-use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
-use bearing_dynamics::solver::housing::reduce::{LEFT_OUT, ReduceOptions, reduce};
-use bearing_dynamics::solver::housing::reduced_start::{
-    Housing as Start0, add_housing, put_in_equilibrium,
-};
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::static_assembly::StaticAssembly;
-use bearing_dynamics::solver::statics::{AssemblySolution, StaticOptions, solve_assembly};
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::housing::{HousingSetup, setup};
+use bearing_dynamics::scene::build::shaft::take_shafts;
+use bearing_dynamics::scene::build::solid_mesh::build_housing;
+use bearing_dynamics::scene::resolve::housing_scene::HousedScene;
+use bearing_dynamics::solids::condensation::{CondensedBore, condense};
+use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
+use bearing_dynamics::solids::reduction::{LEFT_OUT, ReduceOptions, reduce};
 
 use crate::case::CaseError;
 use crate::motion;
@@ -66,8 +64,11 @@ impl Shaft {
         self.scene.bearings[bearing].name.clone()
     }
 
-    pub fn course<'b>(&self, bores: &'b [CondensedBore]) -> Result<CourseProblem<'b>, CaseError> {
-        let seat = |(bearing, (of, bore)): (usize, (&Housing, &'b CondensedBore))| CourseSeat {
+    pub fn course<'b>(
+        &self,
+        bores: &'b [CondensedBore],
+    ) -> Result<QuasiStaticProblem<'b>, CaseError> {
+        let seat = |(bearing, (of, bore)): (usize, (&Housing, &'b CondensedBore))| QuasiStaticFit {
             name: self.name(bearing),
             bearing,
             bore,
@@ -77,7 +78,7 @@ impl Shaft {
             damping: of.setup.solid.problem.damping,
         };
         let seats = self.housings.iter().zip(bores).enumerate().map(seat).collect();
-        Ok(CourseProblem { assembly: self.scene.assembly()?, seats })
+        Ok(QuasiStaticProblem { assembly: self.scene.assembly()?, seats })
     }
 
     /// Everything at rest under the loads at t = 0, races grown into their fits.
@@ -92,7 +93,7 @@ impl Shaft {
             seat.radius = Profile::Constant(of.setup.fit(&of.scene).radius);
             seat.add_to(&mut lists, 0.0);
         }
-        let found = CourseSearch::of(&course.seats).solve(&lists)?;
+        let found = WarmStartedSearch::of(&course.seats).solve(&lists)?;
         Ok((still, found))
     }
 
@@ -114,7 +115,7 @@ impl Shaft {
                 bore,
                 penalty,
                 &setup.fit(scene),
-                &Hardest { force: FORCE, moment: 0.0, start: Some(&rest.seats[bearing]) },
+                &LargestLoads { force: FORCE, moment: 0.0, start: Some(&rest.seats[bearing]) },
             )?;
             let modes_to = scene.housing.modes_to.unwrap_or(MODES_TO);
             let options = ReduceOptions { modes_to, left_out: LEFT_OUT };

@@ -3,15 +3,15 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::lists::OUTER;
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
+use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::TetMesh;
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::SolidModel;
+use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::model::SolidModel;
 
 use crate::case::CaseError;
 use crate::housed::{Course, HousedSearch, HousedState, Moment, history};

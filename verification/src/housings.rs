@@ -3,17 +3,17 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::loads::{DrivenBody, DynamicProblem, Rotation};
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty, contact_nodes};
+use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::dynamics::model::{DynamicProblem, RaceBody, Rotation};
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState, Fit};
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach, condense};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{Prescribed, SolidModel};
-use bearing_dynamics::solver::statics::{Condition, StaticProblem};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreState, Fit};
+use bearing_dynamics::solids::condensation::{CondensedBore, Reach, condense};
+use bearing_dynamics::solids::model::{Prescribed, SolidModel};
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths};
 use crate::case::CaseError;
@@ -120,7 +120,7 @@ pub fn bearing() -> Result<StaticProblem, CaseError> {
 /// The bearing in motion with its outer race, of Table 2.2's dimensions, free to move but for its
 /// rotation; loads on the inner race, which stands still.
 pub fn mounted(loads: [f64; 5]) -> Result<DynamicProblem, CaseError> {
-    let outer = RaceBody {
+    let outer = DrivenBody {
         inertia: inertia::hollow_cylinder(31.953e-3, BORE_RADIUS, WIDTH, STEEL.density),
         ..motion::race([0.0; 5], Rotation::Speed(Profile::ZERO))
     };

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::state::{BodyState, POSITION, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
@@ -9,18 +11,16 @@ use bearing_dynamics::ch2_housing::bearing::geometry::Material;
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::rigid_body::tilts_of;
+use bearing_dynamics::motion::simulation::{RunOptions, Simulation, SimulationError, Stepping};
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::series::Series;
 use bearing_dynamics::output::session::{HousedParts, Parts, RunRequest, Session, Status};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::bushing_problem::{BushingElements, take_bushings};
-use bearing_dynamics::scene::shaft_problem::take_shafts;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
+use bearing_dynamics::scene::build::shaft::take_shafts;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem, RaceBody, Rotation};
-use bearing_dynamics::solver::dynamics::race::tilts_of;
-use bearing_dynamics::solver::dynamics::run::{RunOptions, Simulation, SimulationError, Stepping};
-use bearing_dynamics::solver::dynamics::state::{BodyState, POSITION, VELOCITY};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::Condition;
 
 use crate::bearings::{self, Hertz, Lengths};
 use crate::case::CaseError;
@@ -46,8 +46,8 @@ pub const RACE_IN_ROUGH_BORE: &str = include_str!("../../scenes/race_in_rough_bo
 pub const SPINNING_DISC: &str = include_str!("../../scenes/spinning_disc.toml");
 
 /// An inner race of [`RACE_INERTIA`] under constant loads.
-pub fn race(loads: [f64; 5], rotation: Rotation) -> RaceBody {
-    RaceBody {
+pub fn race(loads: [f64; 5], rotation: Rotation) -> DrivenBody {
+    DrivenBody {
         inertia: inertia::hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density),
         drives: loads.map(|load| Drive::Load(Profile::Constant(load))),
         rotation,

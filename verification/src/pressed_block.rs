@@ -8,10 +8,10 @@ use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::strain::von_mises;
 use bearing_dynamics::mesh::generate::{block, graded, uniform};
 use bearing_dynamics::mesh::{MeshError, Order, TetMesh};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::contact::{CylinderContact, CylinderPath};
-use bearing_dynamics::solver::solid::model::{SolidError, SolidModel};
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::contact::{CylinderContact, CylinderPath};
+use bearing_dynamics::solids::model::{SolidError, SolidModel};
+use bearing_dynamics::solids::stress::nodal_stresses;
 use nalgebra::{Matrix4, UnitQuaternion, Vector3, Vector4};
 
 use crate::solids::{Material, Vec3, free_body, mesh_of, prescribe};

@@ -1,11 +1,9 @@
 //! The rotor of 4.3.4 run up: by the program from its shipped scene, and by the oracle.
 
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::connection::{Connection, Law, SpringDashpot};
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
-use bearing_dynamics::solver::dynamics::state::{Ledger, POSITION};
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::state::{Ledger, POSITION};
+use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -105,7 +103,7 @@ pub struct Done {
 }
 
 impl Done {
-    fn see(&mut self, time: f64, speed: f64, height: f64) {
+    fn record(&mut self, time: f64, speed: f64, height: f64) {
         if height > self.farthest.height {
             self.farthest = Peak { speed, height };
         }
@@ -178,7 +176,7 @@ pub fn run_up(assembly: Assembly, way: &Way, end: f64) -> Result<Done, CaseError
         simulation.step_by(simulation.step_size.min(end - simulation.time))?;
         let now = simulation.system.section_now(&simulation.state, 0, &section).motion;
         let height = now.position[1].hypot(now.position[2]);
-        done.see(simulation.time, simulation.body(0).spin[0], height);
+        done.record(simulation.time, simulation.body(0).spin[0], height);
         if simulation.time >= next {
             next += 1e-3 * end;
             let now = simulation.snapshot();
@@ -232,7 +230,7 @@ pub fn oracle(course: &Course, unbalance: &str, support: Support) -> RunUp {
 /// What it does to `end` s.
 pub fn followed(oracle: &RunUp, end: f64) -> Done {
     let mut done = Done::default();
-    oracle.history(end, |time, speed, height| done.see(time, speed, height));
+    oracle.history(end, |time, speed, height| done.record(time, speed, height));
     done
 }
 

@@ -4,7 +4,7 @@
 pub mod cantilever {
     use bearing_dynamics::mesh::generate::bar;
     use bearing_dynamics::mesh::{Order, TetMesh};
-    use bearing_dynamics::solver::solid::model::SolidProblem;
+    use bearing_dynamics::solids::model::SolidProblem;
 
     use crate::case::CaseError;
     use crate::oracles::timoshenko::{Beam, shear_coefficient};
@@ -68,7 +68,7 @@ pub mod cantilever {
 pub mod thick_ring {
     use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
     use bearing_dynamics::mesh::{Order, TetMesh};
-    use bearing_dynamics::solver::solid::model::SolidProblem;
+    use bearing_dynamics::solids::model::SolidProblem;
 
     use crate::case::CaseError;
     use crate::oracles::lame::{Ends, ThickRing};

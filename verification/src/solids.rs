@@ -7,8 +7,8 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::generate::Solid;
 use bearing_dynamics::mesh::node_order::EDGES;
 use bearing_dynamics::mesh::{Elements, Face, MeshError, Order, TetMesh};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::{DampedMotion, Load, Prescribed, SolidProblem};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::model::{DampedMotion, Load, Prescribed, SolidProblem};
 
 pub type Vec3 = [f64; 3];
 

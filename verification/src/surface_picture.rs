@@ -39,13 +39,13 @@ pub fn surface_picture(picture: &SurfacePicture) -> String {
     let at = |node: u32| {
         let place = mesh.nodes[node as usize];
         let by = displacement.get(node as usize).copied().unwrap_or([0.0; 3]);
-        camera.see([0, 1, 2].map(|i: usize| place[i] + by[i]))
+        camera.record([0, 1, 2].map(|i: usize| place[i] + by[i]))
     };
     let faces = surface(mesh);
     let edges: Vec<[Vec3; 2]> = if displacement.is_empty() {
         Vec::new()
     } else {
-        let plain = |node: u32| camera.see(mesh.nodes[node as usize]);
+        let plain = |node: u32| camera.record(mesh.nodes[node as usize]);
         sharp_edges(mesh, &faces).into_iter().map(|edge| edge.map(plain)).collect()
     };
     let mut triangles = Vec::new();
@@ -99,7 +99,7 @@ impl Camera {
         Camera([[-sa, ca, 0.0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
     }
 
-    fn see(&self, p: Vec3) -> Vec3 {
+    fn record(&self, p: Vec3) -> Vec3 {
         self.0.map(|axis| axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2])
     }
 }

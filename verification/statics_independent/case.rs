@@ -1,6 +1,6 @@
 //! Random bearings, loads and tilts against a solver that shares nothing with the program.
 
-use bearing_dynamics::solver::statics::solve;
+use bearing_dynamics::equilibrium::statics::solve;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
+use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem, StaticSolution};
 use bearing_dynamics::kinematics::{Pose, euler};
-use bearing_dynamics::solver::statics::{Condition, StaticProblem, StaticSolution};
 use nalgebra::Vector3;
 
 use crate::bearings::{self, Hertz, Lengths, known};

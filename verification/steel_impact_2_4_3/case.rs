@@ -1,20 +1,20 @@
 //! An impact on a bearing in a steel bushing, by explicit steps of both.
 
+use bearing_dynamics::assembly::lists::INNER;
+use bearing_dynamics::assembly::lists::OUTER;
+use bearing_dynamics::assembly::loads::Drive;
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::state::{BODY, BodyState, VELOCITY};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::assembly::INNER;
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
-use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, VELOCITY};
-use bearing_dynamics::solver::housing::bore_equilibrium::{BoreSearch, RaceLoad};
-use bearing_dynamics::solver::housing::exchange::{Exchange, ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::presses::race_under_load;
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::SolidModel;
+use bearing_dynamics::solids::bore_equilibrium::{BoreSearch, RaceLoad};
+use bearing_dynamics::solids::load_patterns::race_under_load;
+use bearing_dynamics::solids::model::SolidModel;
 
 use crate::bearings::{self, Hertz};
 use crate::case::{Case, CaseError, Tier};

@@ -3,16 +3,16 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::lists::OUTER;
+use bearing_dynamics::assembly::loads::Drive;
+use bearing_dynamics::equilibrium::statics::Condition;
 use bearing_dynamics::mesh::{Order, TetMesh};
+use bearing_dynamics::motion::coupling::{Exchange, SolidPart};
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
-use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::exchange::{Exchange, SolidPart};
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::solids::condensation::CondensedBore;
+use bearing_dynamics::solids::model::SolidModel;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

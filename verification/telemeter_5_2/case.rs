@@ -7,8 +7,8 @@ use bearing_dynamics::ch5_cage::telemeter::{
 };
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::spectrum::{peaks, spectrum};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::sensors::SceneSensorKind;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::sensors::SceneSensorKind;
 
 use crate::cage_bearing::CAGE_TELEMETER;
 use crate::case::{Case, CaseError, Tier};

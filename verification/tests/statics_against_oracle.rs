@@ -1,6 +1,6 @@
 //! The static solver against the independent one on random bearings, with shrinking.
 
-use bearing_dynamics::solver::statics::solve;
+use bearing_dynamics::equilibrium::statics::solve;
 use proptest::prelude::*;
 use verification::cases::statics_independent::{Sample, disagreement};
 

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use bearing_dynamics::assembly::loads::Drive;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::motion::simulation::Simulation;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::dynamics::model::Drive;
-use bearing_dynamics::solver::dynamics::run::Simulation;
-use bearing_dynamics::solver::profile::Profile;
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths};
 use crate::case::{Case, CaseError, Tier};

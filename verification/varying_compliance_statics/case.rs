@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve_from};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, solve_from};
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths, known};
 use crate::case::{Case, CaseError, Tier};

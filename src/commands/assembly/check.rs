@@ -10,19 +10,19 @@ use crate::commands::check_mesh::{MeshFile, say_written};
 use crate::commands::echo::through;
 use crate::commands::run::{planned_request, request};
 use crate::commands::{CommandResult, echo_run};
+use bearing_dynamics::assembly::plan::motion::race_freedom;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
+use bearing_dynamics::motion::simulation::Stepping;
 use bearing_dynamics::output::fields::size::fields_size;
 use bearing_dynamics::output::session::table_size;
 use bearing_dynamics::output::summary::housing::seat_section;
 use bearing_dynamics::output::summary::solid::mesh_section;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::housing::HousingMethod;
-use bearing_dynamics::scene::sensors::{SceneSensor, SceneSensorKind};
-use bearing_dynamics::scene::statics::static_problem;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::motion::dynamic_problem;
+use bearing_dynamics::scene::build::sensors::{SceneSensor, SceneSensorKind};
+use bearing_dynamics::scene::build::statics::static_problem;
+use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
-use bearing_dynamics::solver::dynamics::run::Stepping;
-use bearing_dynamics::solver::plan::motion::race_freedom;
 
 pub fn run(
     document: &Document,

@@ -6,19 +6,19 @@ use super::{Fallible, name_of};
 use crate::commands::{echo as bearing_echo, echo_run, solid};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
+use bearing_dynamics::members::beam::{BeamDisc, BeamSegment};
+use bearing_dynamics::members::connection::MaxwellElement;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
-use bearing_dynamics::scene::assembly::{
+use bearing_dynamics::scene::build::assembly::{
     AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Carrier, PlacedBearing,
     PlacedHousing, SIX, SceneBeam, Spring, SpringAt, SpringEnd,
 };
-use bearing_dynamics::scene::dynamics::dynamic_problem;
-use bearing_dynamics::scene::housing::{FitSize, HousingMethod, HousingSettings};
-use bearing_dynamics::scene::sensors::{SceneSensor, SceneSensorKind};
-use bearing_dynamics::solver::dynamics::connection::MaxwellElement;
-use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
-use bearing_dynamics::solver::rotor::beam::{BeamDisc, BeamSegment};
-use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
+use bearing_dynamics::scene::build::motion::dynamic_problem;
+use bearing_dynamics::scene::build::sensors::{SceneSensor, SceneSensorKind};
+use bearing_dynamics::scene::resolve::housing_scene::{FitSize, HousingMethod, HousingSettings};
+use bearing_dynamics::solids::bore_equilibrium::Axial;
+use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
 use serde_json::{Map, Value, json};
 
 /// The scene as understood, every dimensional value with its unit.

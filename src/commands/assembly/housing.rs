@@ -4,31 +4,30 @@ use super::Fallible;
 use crate::commands::memory::within;
 use crate::commands::placed;
 use crate::commands::solid::mesh_notes;
+use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::plan::Item;
+use bearing_dynamics::assembly::plan::solid;
+use bearing_dynamics::assembly::plan::solid::Method;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
+use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticFit;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::read::LengthUnit;
+use bearing_dynamics::motion::race_in_bore::Seat;
+use bearing_dynamics::numeric::clock::{rounded, to_digits};
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::numeric::sparse::Memory;
 use bearing_dynamics::scene::Document;
-use bearing_dynamics::scene::housing::{HousedScene, HousingMethod};
-use bearing_dynamics::scene::housing_problem::{
+use bearing_dynamics::scene::build::housing::{
     HousingSetup, check_constant, check_supports, setup,
 };
-use bearing_dynamics::scene::solid::{MeshPlace, MeshSource};
-use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build_housing};
-use bearing_dynamics::solver::clock::{rounded, to_digits};
-use bearing_dynamics::solver::housing::bore_equilibrium::Axial;
-use bearing_dynamics::solver::housing::condensed::{
-    CondensedBore, Sizes, condense_over, memory, sizes,
-};
-use bearing_dynamics::solver::housing::course::CourseSeat;
-use bearing_dynamics::solver::housing::seat::Seat;
-use bearing_dynamics::solver::mount::Mount;
-use bearing_dynamics::solver::plan::Item;
-use bearing_dynamics::solver::plan::solid::{self, Method};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::support::free_motions;
-use bearing_dynamics::solver::solid::tangent::Unknowns;
-use bearing_dynamics::solver::sparse::Memory;
+use bearing_dynamics::scene::build::solid_mesh::{BuiltMesh, build_housing};
+use bearing_dynamics::scene::resolve::housing_scene::{HousedScene, HousingMethod};
+use bearing_dynamics::scene::resolve::solid_scene::{MeshPlace, MeshSource};
+use bearing_dynamics::solids::bore_equilibrium::Axial;
+use bearing_dynamics::solids::condensation::{CondensedBore, Sizes, condense_over, memory, sizes};
+use bearing_dynamics::solids::support::free_motions;
+use bearing_dynamics::solids::tangent::Unknowns;
 use std::time::Instant;
 
 /// Part of the race's radius beyond which nodes of the bore count as out of reach until something
@@ -108,7 +107,7 @@ impl Housing {
         }
         Err(format!(
             "{}an equilibrium needs a housing that is held, and this one is free to move {}; add \
-             [[solid.held]]",
+             [[solid.fixed]]",
             self.before(),
             free.names()
         )
@@ -136,8 +135,8 @@ impl Housing {
     }
 
     /// The race in its condensed bore, of this radius over time.
-    pub fn course_seat<'b>(&self, bore: &'b CondensedBore, radius: Profile) -> CourseSeat<'b> {
-        CourseSeat {
+    pub fn course_seat<'b>(&self, bore: &'b CondensedBore, radius: Profile) -> QuasiStaticFit<'b> {
+        QuasiStaticFit {
             name: self.name.clone(),
             bearing: self.bearing,
             bore,

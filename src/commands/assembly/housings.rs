@@ -3,28 +3,30 @@
 use super::Fallible;
 use super::housing::Housing;
 use super::lists::Lists;
-use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::output::session::HousedParts;
-use bearing_dynamics::scene::Document;
-use bearing_dynamics::scene::about::About;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::bushing_problem::BushingElements;
-use bearing_dynamics::scene::housing::HousingMethod;
-use bearing_dynamics::scene::shaft_problem::ShaftElements;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
-use bearing_dynamics::solver::dynamics::equilibrium::{conditions, given_speed, static_assembly};
-use bearing_dynamics::solver::dynamics::run::RunOptions;
-use bearing_dynamics::solver::dynamics::shaft::{ElasticShaft, ShaftLoad};
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, beyond_normals};
-use bearing_dynamics::solver::housing::course::{CourseProblem, CourseSeat, Moment};
-use bearing_dynamics::solver::housing::course_search::CourseSearch;
-use bearing_dynamics::solver::housing::exchange::{ExchangeOptions, SolidPart};
-use bearing_dynamics::solver::housing::true_distances::solve_with_true_distances;
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::static_assembly::StaticAssembly;
-use bearing_dynamics::solver::statics::{
+use bearing_dynamics::assembly::lists::{Assembly, Body};
+use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::equilibrium::exact_gap_iteration::solve_with_true_distances;
+use bearing_dynamics::equilibrium::initial::{conditions, given_speed, static_assembly};
+use bearing_dynamics::equilibrium::quasi_static_sequence::{
+    Moment, QuasiStaticFit, QuasiStaticProblem,
+};
+use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, Condition, StaticOptions, solve_assembly,
 };
+use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
+use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::members::flexible_shaft::{ElasticShaft, ShaftLoad};
+use bearing_dynamics::motion::coupling::{ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::simulation::RunOptions;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::output::session::HousedParts;
+use bearing_dynamics::scene::Document;
+use bearing_dynamics::scene::build::about::About;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::bushing::BushingElements;
+use bearing_dynamics::scene::build::shaft::ShaftElements;
+use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
+use bearing_dynamics::solids::condensation::{CondensedBore, beyond_normals};
 use nalgebra::SVector;
 
 /// Reads or makes the meshes.
@@ -115,18 +117,18 @@ pub fn course<'b>(
     assembly: Assembly,
     housings: &[Housing],
     bores: &'b [CondensedBore],
-) -> CourseProblem<'b> {
-    CourseProblem { assembly, seats: seats(housings, bores) }
+) -> QuasiStaticProblem<'b> {
+    QuasiStaticProblem { assembly, seats: seats(housings, bores) }
 }
 
 /// Their races in their bores, as large as they are at any time.
-pub fn seats<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<CourseSeat<'b>> {
+pub fn seats<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiStaticFit<'b>> {
     let seats = housings.iter().zip(bores);
     seats.map(|(of, bore)| of.course_seat(bore, of.setup.radius(&of.scene))).collect()
 }
 
 /// The same with races as fully grown into their fits.
-pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<CourseSeat<'b>> {
+pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiStaticFit<'b>> {
     let seat = |(of, bore): (&Housing, &'b CondensedBore)| {
         of.course_seat(bore, Profile::Constant(of.setup.fit(&of.scene).radius))
     };
@@ -138,13 +140,13 @@ pub struct Equilibrium<'b> {
     pub still: StaticAssembly<'b>,
     pub moment: Moment,
     /// Of races in bores, with the contact there.
-    pub in_bores: Option<(CourseProblem<'b>, CourseSearch<'b>)>,
+    pub in_bores: Option<(QuasiStaticProblem<'b>, WarmStartedSearch<'b>)>,
 }
 
 /// The equilibrium at t = 0, races grown into their fits; looked for `near` places that are known.
 pub fn equilibrium<'b>(
     lists: &Lists,
-    seats: Vec<CourseSeat<'b>>,
+    seats: Vec<QuasiStaticFit<'b>>,
     near: Option<&[SVector<f64, 5>]>,
 ) -> Fallible<Equilibrium<'b>> {
     let mut still: StaticAssembly<'b> = super::still(lists)?;
@@ -154,8 +156,8 @@ pub fn equilibrium<'b>(
         return Ok(Equilibrium { still, moment, in_bores: None });
     }
     seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
-    let course = CourseProblem { assembly: lists.assembly()?.clone(), seats };
-    let mut search = CourseSearch::of(&course.seats);
+    let course = QuasiStaticProblem { assembly: lists.assembly()?.clone(), seats };
+    let mut search = WarmStartedSearch::of(&course.seats);
     search.look_near(near);
     let moment = course.solve(&mut search, &still, 0.0)?;
     Ok(Equilibrium { still, moment, in_bores: Some((course, search)) })
@@ -239,7 +241,7 @@ fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec
 }
 
 /// Where bodies rest under the loads at t = 0, races in their bores.
-pub fn at_start(assembly: &Assembly, seats: &[CourseSeat]) -> Fallible<AssemblySolution> {
+pub fn at_start(assembly: &Assembly, seats: &[QuasiStaticFit]) -> Fallible<AssemblySolution> {
     let mut still = static_assembly(assembly, 0.0, &[]);
     seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
     Ok(solve_assembly(&still, None, &StaticOptions::default())?)

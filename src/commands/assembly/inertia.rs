@@ -3,14 +3,14 @@
 use super::Fallible;
 use super::housing::Housing;
 use super::modes::natural_shapes;
+use bearing_dynamics::equilibrium::quasi_static_sequence::{Moment, QuasiStaticProblem};
+use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
+use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::results::quantity;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::excitations::{Excitation, excitations};
-use bearing_dynamics::solver::clock::to_digits;
-use bearing_dynamics::solver::housing::course::{CourseProblem, Moment};
-use bearing_dynamics::solver::housing::course_search::CourseSearch;
-use bearing_dynamics::solver::housing::held_motions::swinging_housing;
-use bearing_dynamics::solver::housing::inertia::lowest_frequency;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::excitations::{Excitation, excitations};
+use bearing_dynamics::solids::fixed_interface_modes::swinging_housing;
+use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 use serde_json::{Value, json};
 
 /// Natural modes of each housing that take part: four give the lowest frequency of a pillow block to 1e-5.
@@ -30,9 +30,9 @@ impl FrequencyRatio {
     /// Natural modes of a housing that are not found.
     pub fn of(
         scene: &AssemblyScene,
-        course: &CourseProblem,
+        course: &QuasiStaticProblem,
         housings: &[Housing],
-        search: &CourseSearch,
+        search: &WarmStartedSearch,
         found: &Moment,
     ) -> Fallible<Option<FrequencyRatio>> {
         let all = excitations(scene).into_iter();

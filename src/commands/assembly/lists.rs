@@ -1,8 +1,8 @@
 //! A scene and what the solver takes of it.
 
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::dynamics::DynamicsError;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::motion::DynamicsError;
 use std::cell::OnceCell;
 
 /// A scene and the lists of its bodies, bearings and shafts, which are made where they are asked for first, and once: those

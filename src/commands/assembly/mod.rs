@@ -14,15 +14,17 @@ mod whirl;
 mod windows;
 
 use super::echo_run;
+use bearing_dynamics::assembly::plan::Item;
+use bearing_dynamics::assembly::plan::motion::race_freedom;
+use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::scene::DefaultUsed;
-use bearing_dynamics::scene::assembly::{AssemblyScene, Carrier, PlacedBearing, PlacedHousing};
-use bearing_dynamics::scene::housing::HousingMethod;
-use bearing_dynamics::scene::statics::{static_problem, still_lists};
-use bearing_dynamics::solver::clock::to_digits;
-use bearing_dynamics::solver::plan::Item;
-use bearing_dynamics::solver::plan::motion::race_freedom;
-use bearing_dynamics::solver::static_assembly::StaticAssembly;
+use bearing_dynamics::scene::build::assembly::{
+    AssemblyScene, Carrier, PlacedBearing, PlacedHousing,
+};
+use bearing_dynamics::scene::build::statics::{static_problem, still_lists};
+use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
 use lists::Lists;
 use std::error::Error;
 

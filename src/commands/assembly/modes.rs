@@ -14,23 +14,23 @@ use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, say};
+use bearing_dynamics::assembly::lists::{Assembly, Body};
+use bearing_dynamics::assembly::loads::Rotation;
+use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly, StaticBody};
+use bearing_dynamics::equilibrium::statics::{AssemblySolution, Determinacy};
+use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
 use bearing_dynamics::output::warnings::{Warning, WarningCode, lines, solid::of_contact_nodes};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::solver::clock::to_digits;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Body};
-use bearing_dynamics::solver::dynamics::model::Rotation;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::held_motions::{
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::solids::condensation::CondensedBore;
+use bearing_dynamics::solids::fixed_interface_modes::{
     Natural, natural_shapes_of, swinging_housing,
 };
-use bearing_dynamics::solver::housing::inertia::{HousingMass, MovingBody};
-use bearing_dynamics::solver::rotor::model::RotorError;
-use bearing_dynamics::solver::solid::memory::modes_of_fixed;
-use bearing_dynamics::solver::solid::modes::Mode as NaturalShape;
-use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly, StaticBody};
-use bearing_dynamics::solver::statics::{AssemblySolution, Determinacy};
-use bearing_dynamics::solver::vibrations::{Whirling, natural_motions, whirling};
+use bearing_dynamics::solids::memory::modes_of_fixed;
+use bearing_dynamics::solids::modes::Mode as NaturalShape;
+use bearing_dynamics::vibrations::quasi_static_limit::{HousingMass, MovingBody};
+use bearing_dynamics::vibrations::rotor::RotorError;
+use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, natural_motions, whirling};
 use serde_json::json;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -172,7 +172,7 @@ fn spinning(
     solution: &AssemblySolution,
     bodies: &[MovingBody],
     masses: &[HousingMass],
-) -> Result<Option<Whirling>, RotorError> {
+) -> Result<Option<SmallMotionModel>, RotorError> {
     if !bodies.iter().any(|of| has_speed(&assembly.bodies[of.body])) {
         return Ok(None);
     }

@@ -6,25 +6,22 @@ use super::housings::{Largest, at_start, condensed, seats};
 use super::lists::Lists;
 use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::plan_step::note;
+use bearing_dynamics::assembly::lists::{Assembly, Bearing};
+use bearing_dynamics::assembly::plan::counts::Counts;
 use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::motion::reduced_start;
+use bearing_dynamics::motion::reduced_start::{add_housing, ball_frequency, put_in_equilibrium};
+use bearing_dynamics::motion::simulation::Start;
+use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::session::Motion;
 use bearing_dynamics::output::warnings::{Warning, WarningCode};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::excitations::{Excitation, excitations};
-use bearing_dynamics::solver::clock::to_digits;
-use bearing_dynamics::solver::dynamics::assembly::{Assembly, Bearing};
-use bearing_dynamics::solver::dynamics::run::Start;
-use bearing_dynamics::solver::housing::bore_equilibrium::{Axial, BoreState, Fit};
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::presses::{Hardest, pressed};
-use bearing_dynamics::solver::housing::reduce::{
-    CutOff, LEFT_OUT, ReduceOptions, Reduction, reduce,
-};
-use bearing_dynamics::solver::housing::reduced_start::{
-    self, add_housing, ball_frequency, put_in_equilibrium,
-};
-use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::solid::memory;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::excitations::{Excitation, excitations};
+use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreState, Fit};
+use bearing_dynamics::solids::condensation::CondensedBore;
+use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
+use bearing_dynamics::solids::memory;
+use bearing_dynamics::solids::reduction::{CutOff, LEFT_OUT, ReduceOptions, Reduction, reduce};
 use std::error::Error;
 use std::time::Instant;
 
@@ -32,13 +29,13 @@ use std::time::Instant;
 pub struct Shapes {
     pub assembly: Assembly,
     /// What the shapes of each housing are made for, and force (N) and moment (N m) on its race at the start.
-    pub presses: Vec<(Hardest<'static>, [f64; 2])>,
+    pub presses: Vec<(LargestLoads<'static>, [f64; 2])>,
     /// One for each housing.
     pub reductions: Vec<Reduction>,
     /// Wall time that condensing, and finding shapes and start took, s.
     pub seconds: [f64; 2],
     /// How often each stage of condensing ran, one for each housing.
-    pub ran: Vec<Tally>,
+    pub ran: Vec<Counts>,
 }
 
 /// A press by so much more than shapes are made for is told of: patches of contact grow by less than it does.
@@ -55,7 +52,7 @@ fn reduction(
     housing: &Housing,
     bore: &CondensedBore,
     (bearing, struck): (&Bearing, f64),
-    hardest: &Hardest,
+    hardest: &LargestLoads,
 ) -> Fallible<Reduction> {
     let settings = &housing.scene.housing;
     let fit = housing.setup.fit(&housing.scene);
@@ -81,7 +78,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let largest = Largest::of(&assembly, housings);
     // A bearing may be loaded by its places alone.
     let [struck, force] = [largest.on_bodies, largest.in_all].map(|force| force.max(1.0));
-    let hardest = Hardest { force, moment: largest.moments, start: None };
+    let hardest = LargestLoads { force, moment: largest.moments, start: None };
     let start = Instant::now();
     let mut bores: Vec<CondensedBore> = condensed(housings)?;
     let condensing = start.elapsed().as_secs_f64();
@@ -99,8 +96,9 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
         let bearing = &assembly.bearings[housing.bearing];
         let start: Option<&BoreState> = settled.as_ref().map(|settled| &settled.seats[index]);
         let force = housing.scene.housing.press.unwrap_or(hardest.force);
-        let hardest = Hardest { force, ..hardest };
-        let reduction = reduction(housing, bore, (bearing, struck), &Hardest { start, ..hardest })?;
+        let hardest = LargestLoads { force, ..hardest };
+        let reduction =
+            reduction(housing, bore, (bearing, struck), &LargestLoads { start, ..hardest })?;
         let [y, z, about_y, about_z] = start.map_or([0.0; 4], |start| start.load);
         presses.push((hardest, [y.hypot(z), about_y.hypot(about_z)]));
         let body = bearing.mounts[1].body;

@@ -5,10 +5,10 @@ use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::plots::campbell;
 use bearing_dynamics::output::series::{Column, Series};
 use bearing_dynamics::output::warnings::{Warning, WarningCode};
-use bearing_dynamics::solver::rotor::critical::Critical;
-use bearing_dynamics::solver::rotor::model::RotorError;
-use bearing_dynamics::solver::rotor::whirl::{Campbell, Whirl};
-use bearing_dynamics::solver::vibrations::Whirling;
+use bearing_dynamics::vibrations::critical_speeds::Critical;
+use bearing_dynamics::vibrations::rotor::RotorError;
+use bearing_dynamics::vibrations::small_motions::SmallMotionModel;
+use bearing_dynamics::vibrations::whirl::{Campbell, Whirl};
 use ndarray::Array2;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -27,7 +27,7 @@ const ACROSS: f64 = 0.01;
 
 /// Motions of what spins.
 pub struct Spinning {
-    pub whirling: Whirling,
+    pub whirling: SmallMotionModel,
     /// At the scene's speed.
     whirls: Vec<Whirl>,
     /// Up to twice that speed, or why there are none.
@@ -46,7 +46,7 @@ fn is_whirl(whirl: &Whirl) -> bool {
 }
 
 impl Spinning {
-    pub fn new(whirling: Whirling, housed: bool) -> Fallible<Spinning> {
+    pub fn new(whirling: SmallMotionModel, housed: bool) -> Fallible<Spinning> {
         let top = whirling.top_speed;
         let model = &whirling.model;
         let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / (SPEEDS - 1) as f64).collect();

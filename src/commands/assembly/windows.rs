@@ -1,13 +1,13 @@
 //! What `bearing plan` says of windows between exchanges of bodies and solids in explicit steps.
 
+use bearing_dynamics::motion::bonded_bushing::BondedBushing;
+use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::explicit_solid::SteppedSolid;
+use bearing_dynamics::motion::simulation::Stepping;
+use bearing_dynamics::numeric::clock::{to_digits, whole_number};
 use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::scene::RunSettings;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::solver::clock::{to_digits, whole_number};
-use bearing_dynamics::solver::dynamics::run::Stepping;
-use bearing_dynamics::solver::housing::bonded::BondedBushing;
-use bearing_dynamics::solver::housing::exchange::Exchange;
-use bearing_dynamics::solver::housing::stepped::SteppedSolid;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use std::error::Error;
 
 /// Windows of explicit steps from the start.

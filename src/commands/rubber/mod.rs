@@ -4,10 +4,10 @@ pub mod plan;
 pub mod statics;
 
 use super::solid;
-use bearing_dynamics::scene::rubber_problem::{RubberSetup, rubber_setup};
-use bearing_dynamics::scene::solid::RubberScene;
+use bearing_dynamics::scene::build::rubber::{RubberSetup, rubber_setup};
+use bearing_dynamics::scene::resolve::solid_scene::RubberScene;
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::solid::support::{FreeMotions, free_motions};
+use bearing_dynamics::solids::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::path::Path;
 
@@ -33,7 +33,7 @@ pub fn refuse_free(path: &Path, free: &FreeMotions) -> Result<(), Box<dyn Error>
         0 => Ok(()),
         _ => Err(format!(
             "{}: a solid of rubber is solved without inertia and must be held, and this one is free to move {}; add \
-             [[solid.held]]",
+             [[solid.fixed]]",
             path.display(),
             free.names()
         )

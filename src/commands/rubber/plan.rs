@@ -6,13 +6,14 @@ use crate::commands::plan_step::note;
 use crate::commands::solid::mesh_notes;
 use crate::commands::solid::plan::{fields_line, from};
 use crate::commands::{CommandResult, Outcome, memory};
-use bearing_dynamics::scene::solid::{RubberScene, RunSteps, SolidRun};
+use bearing_dynamics::assembly::plan::rubber;
+use bearing_dynamics::assembly::plan::rubber::Method;
+use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
+use bearing_dynamics::numeric::clock::{whole_number, whole_steps};
+use bearing_dynamics::scene::resolve::solid_scene::{RubberScene, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::clock::{whole_number, whole_steps};
-use bearing_dynamics::solver::plan::rubber::{self, Method};
-use bearing_dynamics::solver::plan::{Item, Stage, Subject};
-use bearing_dynamics::solver::solid::memory as needed;
-use bearing_dynamics::solver::solid::rubber::steps::Stepping;
+use bearing_dynamics::solids::memory as needed;
+use bearing_dynamics::solids::rubber::steps::Stepping;
 
 pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {
     let prepared = prepare(document, scene, rubber)?;
@@ -86,9 +87,9 @@ fn all_items(scene: &SolidScene, rubber: &RubberScene, prepared: &Prepared) -> V
         items.push(match asked.map(|asked| asked.frequencies.len()) {
             Some(count) => {
                 let why = format!("at {count} frequencies, about rest, by `bearing statics`");
-                Item::does(Stage::Vibrations, subject, why)
+                Item::does(Stage::LinearSystem, subject, why)
             }
-            None => Item::skips(Stage::Vibrations, subject, "no [solid.harmonic]"),
+            None => Item::skips(Stage::LinearSystem, subject, "no [solid.harmonic]"),
         });
     } else {
         items.push(Item::skips(Stage::Implicit, subject, "no `numerics.end`"));

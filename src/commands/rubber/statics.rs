@@ -7,6 +7,8 @@ use crate::commands::memory::refuse_beyond;
 use crate::commands::solid::statics::{WRITTEN, table, write};
 use crate::commands::solid::{record, say_mesh_notes};
 use crate::commands::{CommandResult, Outcome, interruption, placed, say};
+use bearing_dynamics::assembly::plan::counts::Counts;
+use bearing_dynamics::numeric::clock::display_time;
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::rubber_stresses;
 use bearing_dynamics::output::results::pretty;
@@ -14,14 +16,12 @@ use bearing_dynamics::output::summary::rubber::{
     self as summary, harmonic_section, harmonic_series,
 };
 use bearing_dynamics::output::warnings::{lines, solid::of_rubber};
-use bearing_dynamics::scene::rubber_problem::vibrating;
-use bearing_dynamics::scene::solid::{Harmonic, RubberScene};
+use bearing_dynamics::scene::build::rubber::vibrating;
+use bearing_dynamics::scene::resolve::solid_scene::{Harmonic, RubberScene};
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::clock::told;
-use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::solid::memory;
-use bearing_dynamics::solver::solid::rubber::relaxed::{RelaxedError, relaxed_while};
-use bearing_dynamics::solver::solid::rubber::vibration::{Answer, vibrations};
+use bearing_dynamics::solids::memory;
+use bearing_dynamics::solids::rubber::relaxed::{RelaxedError, relaxed_while};
+use bearing_dynamics::solids::rubber::vibration::{Answer, vibrations};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::error::Error;
@@ -46,7 +46,7 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     let model = &setup.model;
     refuse_beyond(&memory::rubber(model), "")?;
     let watch = Watch::new()?;
-    let found = relaxed_while(model, time, |part| watch.see(part));
+    let found = relaxed_while(model, time, |part| watch.record(part));
     watch.bar.finish_and_clear();
     let found = found.map_err(|error| keep_curve(&prepared, folder.as_deref(), error))?;
     let mut seconds =
@@ -72,7 +72,7 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     let warnings = of_rubber(model, &found.state.displacement)?;
     summary["warnings"] = json!(warnings);
     say_mesh_notes(built)?;
-    say(&format!("relaxed, under loads and displacements of t = {} s\n", told(time)))?;
+    say(&format!("relaxed, under loads and displacements of t = {} s\n", display_time(time)))?;
     say(&table(&summary))?;
     if let Some((asked, answers)) = &answers {
         say(&harmonic_table(asked, answers))?;
@@ -110,7 +110,7 @@ impl Watch {
         Ok(Watch { bar, interrupted: interruption(|| std::process::exit(2))? })
     }
 
-    fn see(&self, part: f64) -> bool {
+    fn record(&self, part: f64) -> bool {
         self.bar.set_position((1000.0 * part) as u64);
         // The last part leaves nothing to interrupt.
         part >= 1.0 || !self.interrupted.load(Ordering::Relaxed)
@@ -151,7 +151,7 @@ fn answers(
     document: &Document,
     prepared: &Prepared,
     asked: &Harmonic,
-    ran: &mut Tally,
+    ran: &mut Counts,
 ) -> Result<Vec<Answer>, Box<dyn std::error::Error>> {
     let model = vibrating(&prepared.setup, asked)
         .map_err(|error| placed(document, Some(error.about()), error))?;
@@ -175,7 +175,7 @@ fn harmonic_table(asked: &Harmonic, answers: &[Answer]) -> String {
         let _ = writeln!(
             text,
             "{:>14}{:>16.1}{:>16.1}{:>16.1}{:>12.5}",
-            told(answer.frequency),
+            display_time(answer.frequency),
             stiffness.storage,
             stiffness.loss,
             of.dynamic_stiffness,

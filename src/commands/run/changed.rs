@@ -1,9 +1,9 @@
 //! What has changed in a scene since the run that is to go on was begun.
 
+use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::compare::channels::{Leaf, leaves};
 use bearing_dynamics::output::json;
 use bearing_dynamics::output::results::RunRecord;
-use bearing_dynamics::solver::clock::rounded;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,12 +1,12 @@
 //! The few numbers of a run that `bearing run` ends with.
 
+use bearing_dynamics::equilibrium::quasi_static_sequence::Course;
+use bearing_dynamics::motion::simulation::Simulation;
+use bearing_dynamics::numeric::clock::display_time;
 use bearing_dynamics::output::recorder::seat::prefix;
 use bearing_dynamics::output::session::{Motion, Session};
 use bearing_dynamics::output::summary::housing::PEAK_PRESSURE;
 use bearing_dynamics::output::table::RunTable;
-use bearing_dynamics::solver::clock::told;
-use bearing_dynamics::solver::dynamics::run::Simulation;
-use bearing_dynamics::solver::housing::course::Course;
 
 type Lines = Vec<(String, String)>;
 
@@ -165,14 +165,14 @@ fn of_bearing(simulation: &Simulation, table: &RunTable, lines: &mut Lines) {
     {
         let of = bearing.name.as_ref().map_or(String::new(), |name| format!("{name} "));
         let farthest = &extremes.farthest;
-        let at = told(farthest.time);
+        let at = display_time(farthest.time);
         let place = format!("{:.6} um at t = {at} s", 1e6 * farthest.value);
         line(&format!("{of}inner race, farthest"), place);
         let [inner, outer] = extremes.races.map(|race| race.load);
         let (load, race) =
             if outer.value > inner.value { (outer, "outer") } else { (inner, "inner") };
         if load.value > 0.0 {
-            let (ball, at) = (load.ball + 1, told(load.time));
+            let (ball, at) = (load.ball + 1, display_time(load.time));
             let value = format!("{:.6} N, ball {ball}, {race} race, at t = {at} s", load.value);
             line(&format!("{of}largest ball load"), value);
         }
@@ -180,7 +180,7 @@ fn of_bearing(simulation: &Simulation, table: &RunTable, lines: &mut Lines) {
         if between.value > 0.0 {
             let balls = bearing.geometry.ball_count;
             let (one, other) = (between.ball + 1, (between.ball + 1) % balls + 1);
-            let at = told(between.time);
+            let at = display_time(between.time);
             let value = format!("{:.6} N, balls {one} and {other}, at t = {at} s", between.value);
             line(&format!("{of}largest between balls"), value);
         }
@@ -198,7 +198,7 @@ fn of_bearing(simulation: &Simulation, table: &RunTable, lines: &mut Lines) {
                 shortened.times,
                 shortened.from,
                 simulation.step_size,
-                told(shortened.last)
+                display_time(shortened.last)
             ),
         );
     }

@@ -10,13 +10,13 @@ pub use prepared::{planned_request, request};
 
 use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use super::{Changes, CommandResult, Outcome, interruption, results_folder, say};
+use bearing_dynamics::motion::bonded_bushing::BondedBushing;
+use bearing_dynamics::motion::explicit_solid::SteppedSolid;
+use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateError, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::resolve_subject;
-use bearing_dynamics::solver::clock::rounded;
-use bearing_dynamics::solver::housing::bonded::BondedBushing;
-use bearing_dynamics::solver::housing::stepped::SteppedSolid;
-use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
+use bearing_dynamics::solids::explicit::ExplicitSolid;
 use indicatif::{ProgressBar, ProgressStyle};
 use prepared::{Prepared, check_end};
 use results::{Seconds, write_fields_file, write_results};

@@ -7,6 +7,10 @@ use crate::commands::assembly::inertia::FrequencyRatio;
 use crate::commands::bushing_remarks::refuse_pushed_through;
 use crate::commands::say;
 use crate::commands::warnings::{aliased, of_run};
+use bearing_dynamics::equilibrium::quasi_static_sequence::Course;
+use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
+use bearing_dynamics::motion::foretell::Choice;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};
 use bearing_dynamics::output::fields::{
@@ -27,15 +31,11 @@ use bearing_dynamics::output::summary::solid::{field_sections, mass_section};
 use bearing_dynamics::output::summary::{RunReport, write_run_results};
 use bearing_dynamics::output::table::RunTable;
 use bearing_dynamics::output::warnings::{Warning, lines, solid as of_solid};
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::excitations::excitations;
-use bearing_dynamics::scene::solid::LoadKind;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::excitations::excitations;
+use bearing_dynamics::scene::resolve::solid_scene::LoadKind;
 use bearing_dynamics::scene::{Plot, RunPlot, Scene, SolidScene};
-use bearing_dynamics::solver::dynamics::foretell::Choice;
-use bearing_dynamics::solver::housing::condensed::CondensedBore;
-use bearing_dynamics::solver::housing::course::Course;
-use bearing_dynamics::solver::housing::course_search::CourseSearch;
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::solids::condensation::CondensedBore;
 use serde_json::{Map, Value, json};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -301,7 +301,7 @@ fn inertia_results(
     said: &mut Said,
 ) -> Fallible<()> {
     let problem = &course.problem;
-    let mut search = CourseSearch::of(&problem.seats);
+    let mut search = WarmStartedSearch::of(&problem.seats);
     let found = problem.find(&mut search, course.time()).map_err(Box::from);
     let ratio = found.and_then(|at| FrequencyRatio::of(scene, problem, housings, &search, &at));
     match ratio {

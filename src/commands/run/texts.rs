@@ -1,18 +1,16 @@
 //! What a run says of its steps: before, on the way, and where it stopped.
 
 use super::prepared::{Prepared, Way};
+use bearing_dynamics::motion::bonded_bushing::{BondedBushing, BondedRubber};
+use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::explicit_solid::SteppedSolid;
+use bearing_dynamics::motion::foretell::Choice;
+use bearing_dynamics::motion::simulation::{Integrator, Simulation, Stepping as BearingStepping};
+use bearing_dynamics::numeric::clock::{Clock, given_steps, rounded};
 use bearing_dynamics::output::session::{Motion, MovingRubber, RunRequest, Session};
 use bearing_dynamics::output::state::StateFile;
-use bearing_dynamics::solver::clock::{Clock, given_steps, rounded};
-use bearing_dynamics::solver::dynamics::foretell::Choice;
-use bearing_dynamics::solver::dynamics::run::{
-    Integrator, Simulation, Stepping as BearingStepping,
-};
-use bearing_dynamics::solver::housing::bonded::{BondedBushing, BondedRubber};
-use bearing_dynamics::solver::housing::exchange::Exchange;
-use bearing_dynamics::solver::housing::stepped::SteppedSolid;
-use bearing_dynamics::solver::solid::explicit::ExplicitSolid;
-use bearing_dynamics::solver::solid::rubber::steps::Stepping;
+use bearing_dynamics::solids::explicit::ExplicitSolid;
+use bearing_dynamics::solids::rubber::steps::Stepping;
 
 /// Step, its reason, how many there will be, and where it goes on from.
 pub(super) fn announcement(

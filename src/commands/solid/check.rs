@@ -4,19 +4,19 @@ use super::{echo, mesh_notes, prepare};
 use crate::commands::check::{Line, say_json, say_lines};
 use crate::commands::check_mesh::{MeshFile, say_written};
 use crate::commands::{CommandResult, placed, rubber};
+use bearing_dynamics::assembly::plan::counts::Counts;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::recorder::sum;
 use bearing_dynamics::output::summary::solid::mesh_section;
-use bearing_dynamics::scene::rubber_problem::vibrating;
-use bearing_dynamics::scene::solid::{Law, RubberScene};
-use bearing_dynamics::scene::solid_mesh::BuiltMesh;
+use bearing_dynamics::scene::build::rubber::vibrating;
+use bearing_dynamics::scene::build::solid_mesh::BuiltMesh;
+use bearing_dynamics::scene::resolve::solid_scene::{Law, RubberScene};
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::clock::to_digits;
-use bearing_dynamics::solver::plan::tally::Tally;
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::rubber::model::Moment;
-use bearing_dynamics::solver::solid::support::FreeMotions;
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::rubber::model::Moment;
+use bearing_dynamics::solids::support::FreeMotions;
 use serde_json::json;
 use std::error::Error;
 
@@ -110,7 +110,7 @@ fn elastic(document: &Document, scene: &SolidScene) -> Result<Facts, Box<dyn Err
     let setup = prepared.setup;
     let model = SolidModel::labelled(setup.problem, setup.labels)?;
     let mut forces = vec![[0.0; 4]; model.mass.len()];
-    model.add_external_forces(model.acting(), 0.0, &mut forces, &mut Tally::default());
+    model.add_external_forces(model.acting(), 0.0, &mut forces, &mut Counts::default());
     let forces: Vec<Vec3> = forces.iter().map(|f| [f[0], f[1], f[2]]).collect();
     Ok(Facts {
         held: model.problem.prescribed.len(),

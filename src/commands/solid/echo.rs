@@ -10,16 +10,16 @@ use bearing_dynamics::mesh::generate::{
     CageMesh, ContactBlock, Housing, HousingMesh, Part, PillowBlock,
 };
 use bearing_dynamics::mesh::read::LengthUnit;
+use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::SolidScene;
-use bearing_dynamics::scene::solid::{
+use bearing_dynamics::scene::resolve::solid_scene::{
     Harmonic, Law, LoadKind, MeshSource, ProbeOf, RunSteps, SolidRun,
 };
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
-use bearing_dynamics::solver::solid::model::DampedMotion;
-use bearing_dynamics::solver::solid::rubber::steps::Stepping;
-use bearing_dynamics::solver::solid::tangent::MassMatrix;
+use bearing_dynamics::solids::explicit::{ExplicitMethod, SolidStepping};
+use bearing_dynamics::solids::model::DampedMotion;
+use bearing_dynamics::solids::rubber::steps::Stepping;
+use bearing_dynamics::solids::tangent::MassMatrix;
 use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
@@ -155,7 +155,7 @@ pub fn rubber(material: &Elastomer, table: Option<&str>) -> Echo {
     }))
 }
 
-/// Vibrations that are asked for.
+/// LinearSystem that are asked for.
 fn harmonic(asked: &Harmonic) -> Echo {
     let frequencies = asked.frequencies.iter().map(|f| quantity("frequency", *f, "Hz"));
     let frequencies: Vec<Value> = frequencies.collect::<Result<_, _>>()?;

@@ -7,13 +7,13 @@ pub mod plan;
 pub mod statics;
 
 use super::{placed, say};
+use bearing_dynamics::assembly::plan::Item;
 use bearing_dynamics::mesh::repair::Repaired;
 use bearing_dynamics::output::results::RunRecord;
-use bearing_dynamics::scene::solid_mesh::{BuiltMesh, build};
-use bearing_dynamics::scene::solid_problem::{SolidSetup, SolidSetupError, setup};
+use bearing_dynamics::scene::build::solid::{SolidSetup, SolidSetupError, setup};
+use bearing_dynamics::scene::build::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::plan::Item;
-use bearing_dynamics::solver::solid::support::{FreeMotions, free_motions};
+use bearing_dynamics::solids::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::time::Instant;
 

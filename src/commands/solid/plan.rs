@@ -4,19 +4,20 @@ use super::{Prepared, mesh_notes, prepare};
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::note;
 use crate::commands::{CommandResult, Outcome, memory, rubber};
+use bearing_dynamics::assembly::plan::solid;
+use bearing_dynamics::assembly::plan::solid::Method;
+use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
 use bearing_dynamics::mesh::{Order, TetMesh};
+use bearing_dynamics::numeric::clock::whole_number;
+use bearing_dynamics::numeric::sparse::Memory;
 use bearing_dynamics::output::fields::size::{fields_size, file_bytes};
-use bearing_dynamics::scene::solid::{Law, MeshSource, RunSteps, SolidRun};
+use bearing_dynamics::scene::resolve::solid_scene::{Law, MeshSource, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
-use bearing_dynamics::solver::clock::whole_number;
-use bearing_dynamics::solver::plan::solid::{self, Method};
-use bearing_dynamics::solver::plan::{Item, Stage, Subject};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, SolidStepping};
-use bearing_dynamics::solver::solid::memory as needed;
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::step_limit::step_limit;
-use bearing_dynamics::solver::solid::tangent::{MassMatrix, Unknowns};
-use bearing_dynamics::solver::sparse::Memory;
+use bearing_dynamics::solids::explicit::{ExplicitMethod, SolidStepping};
+use bearing_dynamics::solids::memory as needed;
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::step_limit::step_limit;
+use bearing_dynamics::solids::tangent::{MassMatrix, Unknowns};
 
 pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     if let Law::Elastomer(rubber) = &scene.law {

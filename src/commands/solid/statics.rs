@@ -14,11 +14,11 @@ use bearing_dynamics::output::series::Series;
 use bearing_dynamics::output::summary::solid as summary;
 use bearing_dynamics::output::warnings::{lines, solid::of_equilibrium};
 use bearing_dynamics::scene::SolidScene;
-use bearing_dynamics::scene::solid::Law;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium_over};
-use bearing_dynamics::solver::solid::memory;
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::tangent::Unknowns;
+use bearing_dynamics::scene::resolve::solid_scene::Law;
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_over};
+use bearing_dynamics::solids::memory;
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::tangent::Unknowns;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::fmt::Write;
@@ -38,7 +38,7 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     if free.count > 0 {
         return Err(format!(
             "{}: statics needs a body that is held, and this one is free to move {}; add \
-             [[solid.held]], or let it move with `bearing run`",
+             [[solid.fixed]], or let it move with `bearing run`",
             asked.path.display(),
             free.names()
         )

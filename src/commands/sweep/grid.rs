@@ -2,10 +2,9 @@
 
 use crate::commands::assembly::lists::Lists;
 use crate::commands::assembly::still;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::{
-    Document, SceneError, Subject, SweepAxis, keys, resolve, resolve_subject,
-};
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::tables::keys;
+use bearing_dynamics::scene::{Document, SceneError, Subject, SweepAxis, resolve, resolve_subject};
 use sha2::{Digest, Sha256};
 use std::error::Error;
 use std::ops::Range;

@@ -9,14 +9,15 @@ use bearing_dynamics::output::fields::stresses;
 use bearing_dynamics::output::recorder::seat::{SeatRow, prefix};
 use bearing_dynamics::output::warnings::Warning;
 use bearing_dynamics::output::warnings::solid::of_equilibrium;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::scene::bore_shape::BorePlace;
-use bearing_dynamics::scene::housing_problem::setup;
-use bearing_dynamics::scene::input_file::{self, LARGEST_DATA};
-use bearing_dynamics::scene::solid::MeshSource;
-use bearing_dynamics::scene::solid_mesh::build_housing;
-use bearing_dynamics::solver::housing::bore_equilibrium::BoreState;
-use bearing_dynamics::solver::housing::condensed::{CondensedBore, Reach};
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::bore_shape::BorePlace;
+use bearing_dynamics::scene::build::housing::setup;
+use bearing_dynamics::scene::build::solid_mesh::build_housing;
+use bearing_dynamics::scene::resolve::solid_scene::MeshSource;
+use bearing_dynamics::scene::text::input_file;
+use bearing_dynamics::scene::text::input_file::LARGEST_DATA;
+use bearing_dynamics::solids::bore_equilibrium::BoreState;
+use bearing_dynamics::solids::condensation::{CondensedBore, Reach};
 use std::error::Error;
 
 /// Housings of the point before, condensed.

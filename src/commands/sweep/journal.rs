@@ -1,7 +1,8 @@
 //! The journal of an unfinished sweep: a header line, then one line a finished chunk.
 
 use bearing_dynamics::output::WriteError;
-use bearing_dynamics::scene::input_file::{self, InputError};
+use bearing_dynamics::scene::text::input_file;
+use bearing_dynamics::scene::text::input_file::InputError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::error::Error;

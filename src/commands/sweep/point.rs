@@ -5,16 +5,16 @@ use super::housings::{self, Kept};
 use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
 use crate::commands::assembly::lists::Lists;
 use crate::commands::warnings::of_equilibrium;
+use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
+use bearing_dynamics::equilibrium::statics::{
+    AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticSolution,
+};
 use bearing_dynamics::output::Column;
 use bearing_dynamics::output::assembly_results::{key, readable};
 use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::output::warnings::Warning;
 use bearing_dynamics::scene::Document;
-use bearing_dynamics::scene::assembly::AssemblyScene;
-use bearing_dynamics::solver::static_assembly::{Place, StaticAssembly};
-use bearing_dynamics::solver::statics::{
-    AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticSolution,
-};
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use nalgebra::SVector;
 use std::collections::BTreeSet;
 use std::error::Error;

@@ -27,7 +27,7 @@ pub mod unloaded;
 use crate::output::fields;
 use crate::output::json::{self, JsonError};
 use crate::output::series::SeriesError;
-use crate::scene::keys;
+use crate::scene::tables::keys;
 use channels::{Content, MOST_NAME_BYTES, name_columns_as};
 use judge::Judge;
 use std::path::{Path, PathBuf};

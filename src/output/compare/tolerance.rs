@@ -4,7 +4,8 @@
 //! the channel; the components of one vector share theirs). Where a part of the scale is given by hand,
 //! the scale of an angle is one turn at most: an angle that counts turns has no size of its own.
 
-use crate::scene::input_file::{self, InputError};
+use crate::scene::text::input_file;
+use crate::scene::text::input_file::InputError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

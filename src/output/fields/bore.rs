@@ -2,13 +2,13 @@
 
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::{Vec3, dot, scale};
+use crate::members::housing_fit::TouchingNode;
+use crate::motion::system::System;
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
-use crate::solver::dynamics::seat::TouchingNode;
-use crate::solver::dynamics::system::System;
-use crate::solver::housing::bore_equilibrium::BoreState;
-use crate::solver::housing::condensed::CondensedBore;
-use crate::solver::solid::model::SolidModel;
+use crate::solids::bore_equilibrium::BoreState;
+use crate::solids::condensation::CondensedBore;
+use crate::solids::model::SolidModel;
 use ndarray::Array2;
 
 /// A node of the bore and what the race does to it.

@@ -1,7 +1,7 @@
 //! How many files of fields a run writes, and how large they become, before anything is computed.
 
 use crate::mesh::{Order, TetMesh};
-use crate::solver::clock::to_digits;
+use crate::numeric::clock::to_digits;
 use std::fmt;
 
 /// Files and bytes of fields from which on a longer interval is asked for.

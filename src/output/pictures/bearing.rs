@@ -1,11 +1,11 @@
 //! Plots of a run.
 
+use crate::numeric::clock::to_digits;
 use crate::output::plots::{
     Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
 };
 use crate::output::spectrum::{Spectrum, WINDOW};
 use crate::output::table::{Moving, RunTable};
-use crate::solver::clock::to_digits;
 
 /// A plot a run can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

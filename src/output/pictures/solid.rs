@@ -4,7 +4,7 @@ use super::bearing::{POINTS, add_series, over_time, thin};
 use crate::output::plots::{Axis, Curve, PlotError, Style, XyPlot, xy};
 use crate::output::spectrum::{Spectrum, WINDOW, spectrum};
 use crate::output::table::RunTable;
-use crate::scene::solid_problem::{NamedNodes, Support};
+use crate::scene::build::solid::{NamedNodes, Support};
 
 /// Part of the highest peak of all that the peak of a component must reach to be drawn.
 const LEAST: f64 = 1e-3;

@@ -2,7 +2,7 @@
 
 use super::xy::{Axis, Style, XyPlot, xy};
 use super::{Curve, PlotError};
-use crate::solver::rotor::whirl::Campbell;
+use crate::vibrations::whirl::Campbell;
 use std::f64::consts::TAU;
 
 /// Campbell diagram in Hz over rpm, with the critical speeds (rad/s) up to its end. How a line turns is told at its last speed.

@@ -1,10 +1,10 @@
 //! Which balls carry the load, in the manner of Fig. 4.8.
 
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::equilibrium::statics::BallState;
 use crate::output::plots::PlotError;
 use crate::output::plots::canvas::{self, Align, Area, BLACK_TEXT, Point};
 use crate::output::plots::ticks::nice_step;
-use crate::solver::statics::BallState;
 use plotters::style::RGBColor;
 
 /// Cross-section of the bearing in its Y–Z plane. Balls are drawn at their azimuth on the pitch

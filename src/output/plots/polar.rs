@@ -1,8 +1,8 @@
 //! Values over azimuth, seen against the axial direction: +Y to the right, +Z up.
 
+use crate::equilibrium::statics::{BallState, StaticSolution};
 use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point};
 use crate::output::plots::{Curve, PlotError, check_curves, ticks};
-use crate::solver::statics::{BallState, StaticSolution};
 use std::f64::consts::TAU;
 
 #[derive(Clone, Debug, PartialEq)]

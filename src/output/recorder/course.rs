@@ -2,12 +2,12 @@
 
 use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
+use crate::assembly::mount::Mount;
+use crate::equilibrium::quasi_static_sequence::{Course, QuasiStaticProblem};
 use crate::output::series::Column;
-use crate::solver::housing::course::{Course, CourseProblem};
-use crate::solver::mount::Mount;
 
 /// Of the bearings, the bodies besides them, and the housings; with the loads of balls or without.
-pub(super) fn columns(problem: &CourseProblem, with_loads: bool) -> Vec<Column> {
+pub(super) fn columns(problem: &QuasiStaticProblem, with_loads: bool) -> Vec<Column> {
     let bearings = &problem.assembly.bearings;
     let mut columns = Vec::new();
     let mut place = |of: String| {
@@ -50,7 +50,7 @@ pub(super) fn columns(problem: &CourseProblem, with_loads: bool) -> Vec<Column> 
 const RACES: [&str; 2] = ["inner", "outer"];
 
 /// Bearings and sides of the races that may move.
-fn moving_races(problem: &CourseProblem) -> Vec<(usize, usize)> {
+fn moving_races(problem: &QuasiStaticProblem) -> Vec<(usize, usize)> {
     let all = (0..problem.assembly.bearings.len()).flat_map(|bearing| [(bearing, 0), (bearing, 1)]);
     all.filter(|(bearing, side)| problem.moves(*bearing, *side)).collect()
 }

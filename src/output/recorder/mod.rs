@@ -9,12 +9,12 @@ mod solid;
 
 pub use solid::{length, mean, probe_columns, sum};
 
+use crate::assembly::channels::ChannelGroup;
+use crate::assembly::lists::Assembly;
+use crate::assembly::plan::counts::Counts;
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::{Parts, SessionError};
-use crate::scene::solid_problem::{NamedNodes, Support};
-use crate::solver::channels::ChannelGroup;
-use crate::solver::dynamics::assembly::Assembly;
-use crate::solver::plan::tally::Tally;
+use crate::scene::build::solid::{NamedNodes, Support};
 use bearing::BearingColumns;
 use ndarray::Array2;
 
@@ -24,7 +24,7 @@ pub struct Recorder {
     values: Vec<f64>,
     bearing: Option<BearingColumns>,
     /// How often each group of channels was recorded.
-    pub ran: Tally,
+    pub ran: Counts,
     pub probes: Vec<NamedNodes>,
     pub supports: Vec<Support>,
 }
@@ -58,7 +58,7 @@ impl Recorder {
                 columns.extend(rubber::columns(&probes, &supports));
             }
         }
-        let ran = Tally::default();
+        let ran = Counts::default();
         Recorder { columns, values: Vec::new(), bearing, ran, probes, supports }
     }
 

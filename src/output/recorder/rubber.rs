@@ -4,10 +4,10 @@ use super::{Recorder, length, mean, probe_columns};
 use crate::kinematics::strain::von_mises;
 use crate::output::series::Column;
 use crate::output::session::SessionError;
-use crate::scene::solid_problem::{NamedNodes, Support};
-use crate::solver::solid::rubber::error::{RubberError, StepFailure};
-use crate::solver::solid::rubber::measures::{RubberLedger, point_stresses};
-use crate::solver::solid::rubber::steps::RubberSolid;
+use crate::scene::build::solid::{NamedNodes, Support};
+use crate::solids::rubber::error::{RubberError, StepFailure};
+use crate::solids::rubber::measures::{RubberLedger, point_stresses};
+use crate::solids::rubber::steps::RubberSolid;
 
 pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     // The third is held in the Maxwell elements or lost in them; of that, by the law of small strain, the two behind it, what

@@ -3,18 +3,18 @@
 use super::{Recorder, bearing::connection_columns, shaft, solid::check_finite};
 use crate::ch2_housing::bore_contact::ContactSum;
 use crate::kinematics::vec3::Vec3;
+use crate::members::rigid_body::Wrench;
+use crate::motion::bonded_bushing::BondedPart;
+use crate::motion::bore_friction::FrictionSum;
+use crate::motion::coupling::{Exchange, ExchangeError};
+use crate::motion::race_in_bore::Seat;
 use crate::output::series::Column;
 use crate::output::session::{HousedParts, LedgerWatch, SessionError};
-use crate::solver::dynamics::race::RaceLoads;
-use crate::solver::housing::bonded::BondedPart;
-use crate::solver::housing::bore_equilibrium::BoreState;
-use crate::solver::housing::condensed::CondensedBore;
-use crate::solver::housing::exchange::{Exchange, ExchangeError};
-use crate::solver::housing::seat::Seat;
-use crate::solver::housing::seat_friction::FrictionSum;
-use crate::solver::solid::explicit::ExplicitSolid;
-use crate::solver::solid::model::SolidError;
-use crate::solver::solid::stress::first_inverted;
+use crate::solids::bore_equilibrium::BoreState;
+use crate::solids::condensation::CondensedBore;
+use crate::solids::explicit::ExplicitSolid;
+use crate::solids::model::SolidError;
+use crate::solids::stress::first_inverted;
 
 /// The seat at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -164,7 +164,7 @@ impl Recorder {
         }
         let snapshot = housed.snapshot()?;
         let residual = snapshot.residual;
-        if !watch.see(residual, snapshot.turned_over, limit) {
+        if !watch.record(residual, snapshot.turned_over, limit) {
             let turned_over = watch.turned_over;
             return Err(SessionError::EnergyOfBoth { residual, turned_over, limit, time, window });
         }
@@ -181,7 +181,7 @@ impl Recorder {
         solids().for_each(|solid| values.extend([solid.external_work, solid.damping_work]));
         values.extend(seats().map(|seat| seat.growth_work));
         for (of, bushing) in snapshot.bushings.iter().zip(&housed.bushings) {
-            let RaceLoads { force, moment } = of.loads[bushing.second];
+            let Wrench { force, moment } = of.loads[bushing.second];
             values.extend(force.into_iter().chain(moment));
             values.extend([of.network, of.springs, of.kinetic]);
             // Up to where the rubber has the bodies, so that the columns sum up to the residual.

@@ -1,10 +1,10 @@
 //! Columns of a shaft in elements: its watched sections, its energies, and those of what joins races to it.
 
 use super::Recorder;
+use crate::motion::coupling::SolidPart;
+use crate::motion::explicit_shaft::JointSnapshot;
+use crate::motion::explicit_solid::{SolidSnapshot, SteppedSolid};
 use crate::output::series::Column;
-use crate::solver::housing::exchange::SolidPart;
-use crate::solver::housing::stepped::{SolidSnapshot, SteppedSolid};
-use crate::solver::housing::stepped_shaft::JointSnapshot;
 
 /// J.
 const ENERGIES: [&str; 8] = [

@@ -4,11 +4,11 @@ use super::Recorder;
 use crate::kinematics::vec3::Vec3;
 use crate::output::series::Column;
 use crate::output::session::{LedgerWatch, SessionError};
-use crate::scene::solid_problem::{NamedNodes, Support};
-use crate::solver::solid::energy::SolidEnergy;
-use crate::solver::solid::explicit::ExplicitSolid;
-use crate::solver::solid::model::SolidError;
-use crate::solver::solid::stress::look;
+use crate::scene::build::solid::{NamedNodes, Support};
+use crate::solids::energy::SolidEnergy;
+use crate::solids::explicit::ExplicitSolid;
+use crate::solids::model::SolidError;
+use crate::solids::stress::look;
 
 pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     let names =
@@ -59,7 +59,7 @@ impl Recorder {
         let (external, damping) = (ledger.external_work, ledger.damping_work);
         let residual = ledger.balance() - watch.first;
         let turned_over = (strain + kinetic).max(external.abs()).max(damping.abs());
-        if !watch.see(residual, turned_over, limit) {
+        if !watch.record(residual, turned_over, limit) {
             let turned_over = watch.turned_over;
             return Err(SessionError::Energy { residual, turned_over, limit, time, step });
         }

@@ -5,26 +5,26 @@ pub mod motion;
 pub mod rubber;
 pub mod size;
 
-pub use crate::solver::dynamics::clocked::RunRequest;
-pub use crate::solver::ledger_watch::LedgerWatch;
+pub use crate::assembly::ledger_watch::LedgerWatch;
+pub use crate::motion::clocked::RunRequest;
 pub use motion::{Checkpoint, CourseParts, HousedParts, Motion, Parts, SolidParts};
 pub use rubber::{MovingRubber, RubberParts};
 pub use size::{TableSize, table_size};
 
+use crate::assembly::plan::counts::{Counts, StageCounts};
+use crate::equilibrium::quasi_static_sequence::QuasiStaticError;
 use crate::kinematics::vec3::Vec3;
+use crate::motion::clocked;
+use crate::motion::coupling::ExchangeError;
+use crate::motion::simulation::SimulationError;
+use crate::numeric::clock::{Clock, rounded};
 use crate::output::recorder::Recorder;
 use crate::output::series::{Series, SeriesError};
 use crate::output::table::readable;
-use crate::solver::clock::{Clock, rounded};
-use crate::solver::dynamics::clocked;
-use crate::solver::dynamics::run::SimulationError;
-use crate::solver::housing::bore_equilibrium::BoreError;
-use crate::solver::housing::course::CourseError;
-use crate::solver::housing::exchange::ExchangeError;
-use crate::solver::plan::tally::{Ran, Tally};
-use crate::solver::solid::explicit::ExplicitSolid;
-use crate::solver::solid::model::SolidError;
-use crate::solver::solid::rubber::error::RubberError;
+use crate::solids::bore_equilibrium::BoreError;
+use crate::solids::explicit::ExplicitSolid;
+use crate::solids::model::SolidError;
+use crate::solids::rubber::error::RubberError;
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -51,7 +51,7 @@ pub enum SessionError {
     #[error(transparent)]
     Exchange(#[from] ExchangeError),
     #[error(transparent)]
-    Course(#[from] CourseError),
+    Course(#[from] QuasiStaticError),
     #[error(transparent)]
     Bore(#[from] BoreError),
     #[error(transparent)]
@@ -95,9 +95,9 @@ pub struct Session<'p> {
     pub energy_limit: f64,
     pub status: Status,
     /// How often each stage ran before the session began.
-    before: Ran,
+    before: StageCounts,
     /// Counts of the motion and of the recorder as of `sound`.
-    kept_ran: (Ran, Tally),
+    kept_ran: (StageCounts, Counts),
     sound: Sound,
     failed: bool,
 }
@@ -110,7 +110,7 @@ pub struct Sound {
     /// Rows that belong to it.
     pub rows: usize,
     /// How often each stage of the run had run.
-    pub ran: Ran,
+    pub ran: StageCounts,
 }
 
 impl<'p> Session<'p> {
@@ -133,7 +133,7 @@ impl<'p> Session<'p> {
             checkpoint: motion.room(),
             watch: LedgerWatch::default(),
             rows: 0,
-            ran: Ran::default(),
+            ran: StageCounts::default(),
         };
         let mut session = Session::new(motion, clock, recorder, sound, request);
         if let Motion::Solid(moving) = &mut session.motion {
@@ -302,11 +302,11 @@ impl<'p> Session<'p> {
     }
 
     /// How often each stage of the run has run, before it was resumed as well.
-    pub fn ran(&self) -> Ran {
+    pub fn ran(&self) -> StageCounts {
         self.with_before(&self.motion.ran(), &self.recorder.ran)
     }
 
-    fn with_before(&self, motion: &Ran, recorder: &Tally) -> Ran {
+    fn with_before(&self, motion: &StageCounts, recorder: &Counts) -> StageCounts {
         let mut all = self.before.clone();
         all.absorb(motion);
         all.whole.absorb(recorder);

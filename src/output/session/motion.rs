@@ -3,25 +3,26 @@
 
 use super::SessionError;
 use super::rubber::{MovingRubber, RubberParts};
-use crate::scene::solid_problem::SolidSetup;
-use crate::solver::clock::{Clock, whole_number};
-use crate::solver::dynamics::assembly::Assembly;
-use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
-use crate::solver::dynamics::clocked::{self, Arrival, RunRequest};
-use crate::solver::dynamics::model::DynamicProblem;
-use crate::solver::dynamics::run::{RunOptions, Simulation};
-use crate::solver::housing::bonded::BondedPart;
-use crate::solver::housing::checkpoint::{ExchangeCheckpoint, Windows};
-use crate::solver::housing::course::{Course, CourseCheckpoint, CourseProblem};
-use crate::solver::housing::exchange::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
-use crate::solver::housing::seat::Seat;
-use crate::solver::plan::tally::{Ran, Tally};
-use crate::solver::solid::checkpoint::SolidCheckpoint;
-use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
-use crate::solver::solid::model::{SolidError, SolidModel};
-use crate::solver::solid::rubber::checkpoint::RubberCheckpoint;
-use crate::solver::solid::step_limit::{SolidStepLimit, step_limit};
-use crate::solver::solid::team::Crew;
+use crate::assembly::lists::Assembly;
+use crate::assembly::loads::DynamicProblem;
+use crate::assembly::plan::counts::{Counts, StageCounts};
+use crate::equilibrium::quasi_static_sequence::{Course, CourseCheckpoint, QuasiStaticProblem};
+use crate::motion::bonded_bushing::BondedPart;
+use crate::motion::checkpoint::Checkpoint as BearingCheckpoint;
+use crate::motion::clocked;
+use crate::motion::clocked::{Arrival, RunRequest};
+use crate::motion::coupled_checkpoint::{ExchangeCheckpoint, Windows};
+use crate::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use crate::motion::race_in_bore::Seat;
+use crate::motion::simulation::{RunOptions, Simulation};
+use crate::numeric::clock::{Clock, whole_number};
+use crate::scene::build::solid::SolidSetup;
+use crate::solids::checkpoint::SolidCheckpoint;
+use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
+use crate::solids::model::{SolidError, SolidModel};
+use crate::solids::rubber::checkpoint::RubberCheckpoint;
+use crate::solids::step_limit::{SolidStepLimit, step_limit};
+use crate::solids::threads::WorkerPool;
 
 /// What a run is made of.
 pub enum Parts<'p> {
@@ -85,7 +86,7 @@ impl<'p> HousedParts<'p> {
 /// Bodies, bearings and condensed housings that go through equilibria, and the solids of these.
 #[derive(Clone)]
 pub struct CourseParts<'p> {
-    pub problem: CourseProblem<'p>,
+    pub problem: QuasiStaticProblem<'p>,
     /// One for each seat.
     pub models: Vec<&'p SolidModel>,
 }
@@ -107,18 +108,22 @@ pub struct MovingSolid {
 
 impl Motion<'_> {
     /// How often each stage has run since this session began.
-    pub fn ran(&self) -> Ran {
+    pub fn ran(&self) -> StageCounts {
         match self {
             Motion::Bearing(simulation) => simulation.system.ran.clone(),
-            Motion::Solid(moving) => Ran { solids: vec![moving.solid.ran], ..Ran::default() },
+            Motion::Solid(moving) => {
+                StageCounts { solids: vec![moving.solid.ran], ..StageCounts::default() }
+            }
             Motion::Housed(housed) => housed.ran(),
             Motion::Course(course) => course.ran.clone(),
-            Motion::Rubber(moving) => Ran { solids: vec![*moving.solid.ran()], ..Ran::default() },
+            Motion::Rubber(moving) => {
+                StageCounts { solids: vec![*moving.solid.ran()], ..StageCounts::default() }
+            }
         }
     }
 
     /// The same into counts that have room.
-    pub(super) fn ran_into(&self, to: &mut Ran) {
+    pub(super) fn ran_into(&self, to: &mut StageCounts) {
         match self {
             Motion::Bearing(simulation) => to.copy_from(&simulation.system.ran),
             _ => *to = self.ran(),
@@ -129,7 +134,7 @@ impl Motion<'_> {
     pub(super) fn forget_ran(&mut self) {
         match self {
             Motion::Bearing(simulation) => simulation.system.ran.clear(),
-            Motion::Solid(moving) => moving.solid.ran = Tally::default(),
+            Motion::Solid(moving) => moving.solid.ran = Counts::default(),
             Motion::Housed(housed) => housed.forget_ran(),
             Motion::Course(course) => course.ran.clear(),
             Motion::Rubber(moving) => moving.solid.forget_ran(),
@@ -399,7 +404,7 @@ impl SolidParts<'_> {
         let stepping = SolidStepping::Fixed(step);
         let mut solid =
             ExplicitSolid::with_limit(model, self.method, stepping, limit, still, velocity)?;
-        solid.share(&Crew::new(self.threads), self.threads);
+        solid.share(&WorkerPool::new(self.threads), self.threads);
         Ok(Box::new(MovingSolid { solid, threads: self.threads }))
     }
 }

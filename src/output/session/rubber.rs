@@ -1,10 +1,10 @@
 //! A solid of rubber that goes from row to row in implicit steps.
 
 use super::SessionError;
-use crate::scene::rubber_problem::RubberSetup;
-use crate::solver::solid::rubber::checkpoint::RubberCheckpoint;
-use crate::solver::solid::rubber::error::RubberError;
-use crate::solver::solid::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use crate::scene::build::rubber::RubberSetup;
+use crate::solids::rubber::checkpoint::RubberCheckpoint;
+use crate::solids::rubber::error::RubberError;
+use crate::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
 /// A solid of rubber by itself.
 #[derive(Clone, Copy)]

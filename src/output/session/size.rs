@@ -1,8 +1,8 @@
 //! How large the table of a run becomes, before anything is computed.
 
 use super::{Parts, RunRequest, SessionError};
+use crate::numeric::clock::to_digits;
 use crate::output::recorder::Recorder;
-use crate::solver::clock::to_digits;
 use std::collections::HashSet;
 
 /// Most values of a table: kept in memory, copied for the results and written twice.

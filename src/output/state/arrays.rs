@@ -5,7 +5,7 @@ use crate::output::atomic::write_atomic;
 use crate::output::npy;
 use crate::output::series::Series;
 use crate::output::session::Checkpoint;
-use crate::solver::solid::checkpoint::SolidCheckpoint;
+use crate::solids::checkpoint::SolidCheckpoint;
 use ndarray::{Array2, Axis, Slice};
 use std::ops::Range;
 use std::path::Path;

@@ -1,16 +1,16 @@
 //! The section of `state.json` of bodies and bearings in motion.
 
 use super::entries::Refused;
-use crate::solver::dynamics::assembly::Assembly;
-use crate::solver::dynamics::balance::{Balance, ContactTurnover};
-use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
-use crate::solver::dynamics::contacts::Work;
-use crate::solver::dynamics::control::Memory;
-use crate::solver::dynamics::energy::Energy;
-use crate::solver::dynamics::extremes::Extremes;
-use crate::solver::dynamics::stability::{Cause, StepLimit};
-use crate::solver::dynamics::step_watch::{Shortened, StepWatch, Stiffness};
-use crate::solver::ledger_watch::LedgerWatch;
+use crate::assembly::ledger_watch::LedgerWatch;
+use crate::assembly::lists::Assembly;
+use crate::members::contacts::Work;
+use crate::motion::checkpoint::Checkpoint as BearingCheckpoint;
+use crate::motion::energy::Energy;
+use crate::motion::energy_ledger::{Balance, ContactTurnover};
+use crate::motion::error_control::Memory;
+use crate::motion::extremes::Extremes;
+use crate::motion::stability::{Cause, StepLimit};
+use crate::motion::step_watch::{Shortened, StepWatch, Stiffness};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 

@@ -5,18 +5,18 @@ use super::{
     arrays::{arrays_name, bushings_name, read_arrays, read_touching, table},
     friction_entry::{self, FrictionEntry},
 };
-use crate::output::series::SeriesError;
-use crate::output::session::{Checkpoint, HousedParts, Parts};
-use crate::solver::dynamics::checkpoint::Checkpoint as BearingCheckpoint;
-use crate::solver::housing::checkpoint::{
+use crate::equilibrium::quasi_static_sequence::{CourseCheckpoint, Effort};
+use crate::equilibrium::warm_started_search::CourseMemory;
+use crate::motion::checkpoint::Checkpoint as BearingCheckpoint;
+use crate::motion::coupled_checkpoint::{
     ExchangeCheckpoint, SeatCheckpoint, SteppedCheckpoint, Windows,
 };
-use crate::solver::housing::course::{CourseCheckpoint, Effort};
-use crate::solver::housing::course_search::CourseMemory;
-use crate::solver::housing::seat::Growth;
-use crate::solver::solid::checkpoint::SolidCheckpoint;
-use crate::solver::solid::explicit::SolidWork;
-use crate::solver::solid::step_limit::SolidStepLimit;
+use crate::motion::race_in_bore::Growth;
+use crate::output::series::SeriesError;
+use crate::output::session::{Checkpoint, HousedParts, Parts};
+use crate::solids::checkpoint::SolidCheckpoint;
+use crate::solids::explicit::SolidWork;
+use crate::solids::step_limit::SolidStepLimit;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::Path;

@@ -4,9 +4,9 @@ use super::StateError;
 use super::arrays::{table, write_table};
 use super::entries::Refused;
 use crate::ch4_rotor::bore_friction::Spring;
+use crate::motion::bore_friction::NodeSpring;
+use crate::motion::coupled_checkpoint::{ExchangeCheckpoint, FrictionCheckpoint, SeatCheckpoint};
 use crate::output::session::HousedParts;
-use crate::solver::housing::checkpoint::{ExchangeCheckpoint, FrictionCheckpoint, SeatCheckpoint};
-use crate::solver::housing::seat_friction::NodeSpring;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

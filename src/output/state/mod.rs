@@ -13,6 +13,14 @@ pub mod rubber_entry;
 
 pub use crate::output::journal::{SERIES, STATE, Stopped};
 
+use crate::assembly::channels::ChannelGroup;
+use crate::assembly::lists::Assembly;
+use crate::assembly::plan::counts::StageCounts;
+use crate::assembly::plan::{Stage, Subject};
+use crate::equilibrium::quasi_static_sequence::QuasiStaticFit;
+use crate::motion::coupled_checkpoint::SteppedCheckpoint;
+use crate::motion::simulation::Stepping;
+use crate::numeric::clock::{Clock, rounded};
 use crate::output::atomic::{WriteError, remove_partials};
 use crate::output::fields::FOLDER;
 use crate::output::journal::{self, JournalError};
@@ -20,15 +28,7 @@ use crate::output::series::{Series, SeriesError};
 use crate::output::session::{
     Checkpoint, LedgerWatch, Parts, RunRequest, Session, SessionError, Sound,
 };
-use crate::solver::channels::ChannelGroup;
-use crate::solver::clock::{Clock, rounded};
-use crate::solver::dynamics::assembly::Assembly;
-use crate::solver::dynamics::run::Stepping;
-use crate::solver::housing::checkpoint::SteppedCheckpoint;
-use crate::solver::housing::course::CourseSeat;
-use crate::solver::plan::tally::Ran;
-use crate::solver::plan::{Stage, Subject};
-use crate::solver::solid::model::SolidProblem;
+use crate::solids::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
 use bearing_entry::BearingEntry;
 use entries::{CourseEntry, ExchangeEntry, SolidEntry};
@@ -164,7 +164,7 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
         Parts::Course(parts) => {
             parts.models.iter().for_each(|model| hash_solid(&mut hash, &model.problem));
             hash.update(format!("{:?}", parts.problem.assembly));
-            for CourseSeat { name, bearing, bore, penalty, axial, radius, damping: _ } in
+            for QuasiStaticFit { name, bearing, bore, penalty, axial, radius, damping: _ } in
                 &parts.problem.seats
             {
                 hash.update(format!("{name:?} {bearing} {penalty:?} {axial:?} {radius:?}"));
@@ -346,7 +346,7 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
     file
 }
 
-fn stages(ran: &Ran) -> Vec<(String, [usize; 2], u64)> {
+fn stages(ran: &StageCounts) -> Vec<(String, [usize; 2], u64)> {
     let entry = |(stage, subject, count): (Stage, Subject, u64)| {
         (format!("{stage:?}"), subject.numbers(), count)
     };
@@ -357,8 +357,8 @@ fn stages(ran: &Ran) -> Vec<(String, [usize; 2], u64)> {
 const MOST_SUBJECTS: usize = 100_000;
 
 /// `None` where a stage or a subject of it is none.
-fn ran(file: &StateFile) -> Option<Ran> {
-    let mut ran = Ran::default();
+fn ran(file: &StateFile) -> Option<StageCounts> {
+    let mut ran = StageCounts::default();
     for (name, numbers, count) in &file.stages {
         let stage = Stage::ALL.into_iter().find(|stage| format!("{stage:?}") == *name)?;
         let subject = Subject::from_numbers(*numbers).filter(|_| numbers[1] < MOST_SUBJECTS)?;

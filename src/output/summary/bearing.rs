@@ -1,15 +1,15 @@
 //! What a bearing in motion says of its steps, its largest loads and its speeds.
 
 use super::{Part, RunReport};
+use crate::assembly::lists::{BallMeeting, Bearing};
 use crate::ch2_housing::bearing::ball_contact::peak_pressure;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::contact_ellipse;
+use crate::motion::extremes::{Extreme, Extremes};
+use crate::motion::simulation::{Simulation, Stepping};
+use crate::numeric::clock::rounded;
 use crate::output::results::{ResultsError, quantity};
 use crate::output::table::RunTable;
-use crate::solver::clock::rounded;
-use crate::solver::dynamics::assembly::{BallMeeting, Bearing};
-use crate::solver::dynamics::extremes::{Extreme, Extremes};
-use crate::solver::dynamics::run::{Simulation, Stepping};
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;
 

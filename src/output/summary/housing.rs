@@ -1,17 +1,17 @@
 //! What a housing says of its seat, its equilibrium, its inertia and its windows.
 
 use super::{Part, solid::limit_section};
+use crate::equilibrium::quasi_static_sequence::Moment;
 use crate::kinematics::vec3::Vec3;
+use crate::motion::coupling::Exchange;
 use crate::output::recorder::seat::{SeatRow, prefix};
 use crate::output::results::quantity;
 use crate::output::session::Motion;
-use crate::scene::excitations::Excitation;
-use crate::scene::housing_problem::HousingSetup;
-use crate::solver::housing::bore_equilibrium::{BoreState, POSE_NAMES};
-use crate::solver::housing::condensed::{CondensedBore, geometry_error};
-use crate::solver::housing::course::Moment;
-use crate::solver::housing::exchange::Exchange;
-use crate::solver::housing::reduce::CutOff;
+use crate::scene::build::excitations::Excitation;
+use crate::scene::build::housing::HousingSetup;
+use crate::solids::bore_equilibrium::{BoreState, POSE_NAMES};
+use crate::solids::condensation::{CondensedBore, geometry_error};
+use crate::solids::reduction::CutOff;
 use serde_json::{Map, Value, json};
 
 /// What a largest pressure of bore nodes is worth: measured on housings of 2.4.2, where it moved by 24 %

@@ -8,12 +8,12 @@ use crate::output::recorder::sum;
 use crate::output::results::{ResultsError, RunRecord, insert_record, quantity};
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::MovingRubber;
-use crate::scene::rubber_problem::RubberSetup;
-use crate::scene::solid_mesh::BuiltMesh;
-use crate::solver::solid::rubber::model::Moment;
-use crate::solver::solid::rubber::relaxed::{Reached, Relaxed};
-use crate::solver::solid::rubber::steps::Stepping;
-use crate::solver::solid::rubber::vibration::Answer;
+use crate::scene::build::rubber::RubberSetup;
+use crate::scene::build::solid_mesh::BuiltMesh;
+use crate::solids::rubber::model::Moment;
+use crate::solids::rubber::relaxed::{Reached, Relaxed};
+use crate::solids::rubber::steps::Stepping;
+use crate::solids::rubber::vibration::Answer;
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 

@@ -1,6 +1,7 @@
 //! What a solid says of its mesh, statics, modes and steps.
 
 use super::{PEAKS, Part, RunReport};
+use crate::assembly::plan::counts::Counts;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::quality::{Quality, Worst};
 use crate::mesh::{Order, TetMesh};
@@ -9,16 +10,15 @@ use crate::output::recorder::{length, mean, probe_columns, sum};
 use crate::output::results::{ResultsError, RunRecord, insert_record, quantity};
 use crate::output::series::{Series, SeriesError};
 use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
-use crate::scene::solid_mesh::BuiltMesh;
-use crate::scene::solid_problem::{NamedNodes, SolidSetup, Support};
-use crate::solver::plan::tally::Tally;
-use crate::solver::solid::energy::strain_energy;
-use crate::solver::solid::equilibrium::Equilibrium;
-use crate::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
-use crate::solver::solid::labels::Labels;
-use crate::solver::solid::model::SolidModel;
-use crate::solver::solid::modes::Modes;
-use crate::solver::solid::step_limit::SolidStepLimit;
+use crate::scene::build::solid::{NamedNodes, SolidSetup, Support};
+use crate::scene::build::solid_mesh::BuiltMesh;
+use crate::solids::energy::strain_energy;
+use crate::solids::equilibrium::Equilibrium;
+use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
+use crate::solids::labels::Labels;
+use crate::solids::model::SolidModel;
+use crate::solids::modes::Modes;
+use crate::solids::step_limit::SolidStepLimit;
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;
@@ -175,7 +175,7 @@ pub fn statics(
     let mut summary = head("static solution of a solid", model, built, record)?;
     let all: Vec<u32> = (0..model.mass.len() as u32).collect();
     let mut loads = vec![[0.0; 4]; model.mass.len()];
-    model.add_external_forces(model.acting(), 0.0, &mut loads, &mut Tally::default());
+    model.add_external_forces(model.acting(), 0.0, &mut loads, &mut Counts::default());
     let loads: Vec<Vec3> = loads.iter().map(|f| [f[0], f[1], f[2]]).collect();
     let (displacement, reactions) = (&solution.displacement, &solution.reactions);
     let [probes, supports] = named(&setup.probes, &setup.supports, displacement, reactions)?;

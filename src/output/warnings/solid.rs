@@ -5,19 +5,17 @@ use crate::ch2_housing::elastomer::eight_chain::ChainPull;
 use crate::kinematics::vec3::{Vec3, norm, scale};
 use crate::mesh::Order;
 use crate::mesh::layers::thinnest_wall;
+use crate::numeric::clock::{rounded, to_digits};
 use crate::output::fields::Stresses;
 use crate::output::session::Session;
-use crate::solver::clock::{rounded, to_digits};
-use crate::solver::housing::bore_equilibrium::BoreState;
-use crate::solver::solid::model::SolidModel;
-use crate::solver::solid::modes::Modes;
-use crate::solver::solid::rubber::error::StepFailure;
-use crate::solver::solid::rubber::measures::{longest_chain, volume_changes};
-use crate::solver::solid::rubber::model::RubberModel;
-use crate::solver::solid::stress::nodal_stresses;
-use crate::solver::solid::trust::{
-    EnergyError, Placed, at_most, energy_error, largest_von_mises, size,
-};
+use crate::solids::bore_equilibrium::BoreState;
+use crate::solids::model::SolidModel;
+use crate::solids::modes::Modes;
+use crate::solids::rubber::error::StepFailure;
+use crate::solids::rubber::measures::{longest_chain, volume_changes};
+use crate::solids::rubber::model::RubberModel;
+use crate::solids::stress::nodal_stresses;
+use crate::solids::trust::{EnergyError, Placed, at_most, energy_error, largest_von_mises, size};
 
 /// Part of displacements or frequencies that a mesh may miss without a warning, by the upper end of the estimate ([`at_most`]).
 const TOLERATED_ERROR: f64 = 0.02;

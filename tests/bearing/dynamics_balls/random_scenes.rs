@@ -2,15 +2,16 @@
 //! nothing inside anything, or ends with an error that says what has happened.
 
 use crate::dynamics::Noise;
+use bearing_dynamics::assembly::channels::ChannelGroup;
+use bearing_dynamics::assembly::state::POSITION;
 use bearing_dynamics::kinematics::vec3::{norm, sub};
+use bearing_dynamics::members::ball_set::neighbours;
+use bearing_dynamics::motion::simulation::{Simulation, SimulationError};
+use bearing_dynamics::motion::validity::HERTZ_SCALE;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
-use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
-use bearing_dynamics::scene::{self, Format};
-use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::dynamics::ball_set::neighbours;
-use bearing_dynamics::solver::dynamics::bounds::HERTZ_SCALE;
-use bearing_dynamics::solver::dynamics::run::{Simulation, SimulationError};
-use bearing_dynamics::solver::dynamics::state::POSITION;
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::Format;
+use bearing_dynamics::scene::build::motion::{dynamic_problem, run_options};
 
 /// Numbers of one scene.
 struct Draw(Noise);

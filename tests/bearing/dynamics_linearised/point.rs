@@ -2,15 +2,15 @@
 
 use crate::dynamics;
 
-use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot, scale};
-use bearing_dynamics::solver::dynamics::arrow::Arrow;
-use bearing_dynamics::solver::dynamics::assembly::Assembly;
-use bearing_dynamics::solver::dynamics::contacts::{Driver, Want};
-use bearing_dynamics::solver::dynamics::linearised::{Hub, Linearised};
-use bearing_dynamics::solver::dynamics::state::{
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::state::{
     Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
 };
-use bearing_dynamics::solver::dynamics::system::System;
+use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot, scale};
+use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
+use bearing_dynamics::motion::linearised::{Hub, Linearised};
+use bearing_dynamics::motion::system::System;
 use dynamics::*;
 
 /// Parts of the equations that are judged on their own, each against the largest s J w in it.
@@ -70,7 +70,7 @@ pub struct Point {
 }
 
 pub fn linearised(of: impl Into<Assembly>, state: Vec<f64>) -> Point {
-    let mut system = System::new(of, Driver::Lanes);
+    let mut system = System::new(of, Kernel::Simd);
     let mut rates = vec![0.0; state.len()];
     system.evaluate_with(Want::ForcesAndSlopes, 0.0, &state, &mut rates);
     let mut linearised = Linearised::new(&system);
@@ -140,7 +140,7 @@ impl Point {
     pub fn left_over(&mut self, scale: f64, r: &[f64]) -> LeftOver {
         let Point { system, state, linearised } = self;
         let layout = system.sets[0].layout;
-        let mut arrow = Arrow::new(system, linearised);
+        let mut arrow = BlockArrowMatrix::new(system, linearised);
         arrow.factor(linearised, scale);
         let mut w = vec![0.0; layout.len()];
         arrow.solve(linearised, &system.sets, state, &vec![0.0; state.len()], r, &mut w);

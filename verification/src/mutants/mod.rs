@@ -14,11 +14,11 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use list::{Check, List, Mutant};
-use programs::{Programs, Ran};
+use programs::{Programs, StageCounts};
 
 /// Numbers of faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct Counts {
     pub caught: usize,
     pub survived: usize,
 }
@@ -38,7 +38,7 @@ fn time_limit(without_fault: f64) -> Duration {
 /// # Errors
 /// When the list is not sound, a text does not occur exactly once, the sources do not build, or a
 /// check fails or runs no test without a fault.
-pub fn run(root: &Path, only: &[String], jobs: usize) -> Result<Tally, String> {
+pub fn run(root: &Path, only: &[String], jobs: usize) -> Result<Counts, String> {
     let list = List::read(root)?;
     if let Some(unknown) = only.iter().find(|id| list.mutants.iter().all(|m| m.id != **id)) {
         return Err(format!("no fault `{unknown}`"));
@@ -66,15 +66,17 @@ pub fn run(root: &Path, only: &[String], jobs: usize) -> Result<Tally, String> {
         Ok(by.is_some())
     })?;
     let caught = caught.into_iter().filter(|caught| *caught).count();
-    Ok(Tally { caught, survived: selected.len() - caught })
+    Ok(Counts { caught, survived: selected.len() - caught })
 }
 
 /// Seconds that a check takes without a fault. A check that fails anyway, or runs no test, catches nothing.
 fn prove(programs: &Programs, check: &Check, thread: usize) -> Result<f64, String> {
     match programs.run(check, 0, thread, LONGEST)? {
-        (Ran::Passed { tests: 0 }, _) => Err(format!("`{check}` runs no test")),
-        (Ran::Passed { .. }, seconds) => Ok(seconds),
-        (Ran::Failed | Ran::TimedOut, _) => Err(format!("`{check}` fails without any fault")),
+        (StageCounts::Passed { tests: 0 }, _) => Err(format!("`{check}` runs no test")),
+        (StageCounts::Passed { .. }, seconds) => Ok(seconds),
+        (StageCounts::Failed | StageCounts::TimedOut, _) => {
+            Err(format!("`{check}` fails without any fault"))
+        }
     }
 }
 
@@ -88,9 +90,9 @@ fn judge(
 ) -> Result<Option<String>, String> {
     for check in &mutant.caught_by {
         match programs.run(check, number, thread, time_limit(seconds[check]))?.0 {
-            Ran::Passed { .. } => {}
-            Ran::Failed => return Ok(Some(check.to_string())),
-            Ran::TimedOut => return Ok(Some(format!("{check} (does not end)"))),
+            StageCounts::Passed { .. } => {}
+            StageCounts::Failed => return Ok(Some(check.to_string())),
+            StageCounts::TimedOut => return Ok(Some(format!("{check} (does not end)"))),
         }
     }
     Ok(None)

@@ -12,7 +12,7 @@ use super::switch;
 
 /// Result of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ran {
+pub enum StageCounts {
     Passed { tests: usize },
     Failed,
     TimedOut,
@@ -101,7 +101,7 @@ impl Programs {
         number: usize,
         thread: usize,
         time_limit: Duration,
-    ) -> Result<(Ran, f64), String> {
+    ) -> Result<(StageCounts, f64), String> {
         let program = &self.paths[&check.binary().map(String::from)];
         let clock = Instant::now();
         let mut command = Command::new(program);
@@ -128,9 +128,9 @@ impl Programs {
         command.process_group(0).stdin(Stdio::null()).stdout(file).stderr(other);
         let child = command.spawn().map_err(|error| at(program, &error))?;
         let ran = match wait(child, time_limit)? {
-            None => Ran::TimedOut,
-            Some(false) => Ran::Failed,
-            Some(true) => Ran::Passed { tests: tests_in(&log, check) },
+            None => StageCounts::TimedOut,
+            Some(false) => StageCounts::Failed,
+            Some(true) => StageCounts::Passed { tests: tests_in(&log, check) },
         };
         Ok((ran, clock.elapsed().as_secs_f64()))
     }

@@ -3,11 +3,11 @@
 //!
 //! Each method's reference is a converged run of another one.
 
+use bearing_dynamics::assembly::loads::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::CageForce;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::Integrator::{DormandPrince, Rosenbrock};
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::motion::simulation::Integrator::{DormandPrince, Rosenbrock};
 
 use super::motion::sentences;
 use super::motion::{LABELS, Measures, Method, Variant, Window, errors, follow, measure};

@@ -5,12 +5,12 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::lists::OUTER;
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::dynamics::assembly::OUTER;
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::housing::exchange::{Exchange, SolidPart};
-use bearing_dynamics::solver::profile::Profile;
+use bearing_dynamics::motion::coupling::{Exchange, SolidPart};
+use bearing_dynamics::numeric::profile::Profile;
 
 use crate::case::CaseError;
 use crate::housing_turn::{

@@ -4,11 +4,11 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{
+use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::assembly::state::{BODY, BodyState, Layout, POSITION};
+use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
-use bearing_dynamics::solver::dynamics::state::{BODY, BodyState, Layout, POSITION};
 
 use crate::case::CaseError;
 use crate::pareto::{ParetoContext, Point, cheapest_ways};

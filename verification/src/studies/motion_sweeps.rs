@@ -1,7 +1,7 @@
 //! Families of variants that the studies of the bearing in motion go through alike.
 
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::Integrator::DormandPrince;
+use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::motion::simulation::Integrator::DormandPrince;
 
 use super::motion::{History, Measures, Method, Variant, Window, limit, measure};
 use super::motion::{best_errors, follow, from_first_to_last, sentences};

@@ -5,13 +5,14 @@
 //! error control, and the other way round. Where strikes of a cage let small differences grow, the error of one run is
 //! chance: there it is the median of runs under loads some permille apart, each against its own references.
 
+use bearing_dynamics::assembly::channels::ChannelGroup;
+use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::motion::foretell::{choose, foretell};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::output::session::{RunRequest, Session, Status};
-use bearing_dynamics::scene::dynamics::{dynamic_problem, run_options};
-use bearing_dynamics::scene::{self, Format};
-use bearing_dynamics::solver::channels::ChannelGroup;
-use bearing_dynamics::solver::dynamics::foretell::{choose, foretell};
-use bearing_dynamics::solver::dynamics::model::DynamicProblem;
-use bearing_dynamics::solver::dynamics::run::{Integrator, RunOptions, Stepping};
+use bearing_dynamics::scene;
+use bearing_dynamics::scene::Format;
+use bearing_dynamics::scene::build::motion::{dynamic_problem, run_options};
 
 use super::motion::{History, LABELS, Method, errors};
 use crate::case::CaseError;

@@ -1,11 +1,11 @@
 //! The rotor of chapter 4: what its critical speed, the moment of Table 4.2 and the peak of a run-up cost, by what stands for the
 //! shaft, its mesh, its shapes, and integrators.
 
-use bearing_dynamics::solver::dynamics::equilibrium::{at_start, static_assembly};
-use bearing_dynamics::solver::dynamics::run::{Integrator, Stepping};
-use bearing_dynamics::solver::housing::inertia::MovingBody;
-use bearing_dynamics::solver::statics::{StaticOptions, solve_assembly};
-use bearing_dynamics::solver::vibrations::whirling;
+use bearing_dynamics::equilibrium::initial::{at_start, static_assembly};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::motion::simulation::{Integrator, Stepping};
+use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
+use bearing_dynamics::vibrations::small_motions::whirling;
 
 use crate::case::CaseError;
 use crate::motion::{ROTOR_IN_ELEMENTS, ROTOR_OF_TETRAHEDRA, RPM, changed_scene, ran};

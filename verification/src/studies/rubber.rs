@@ -6,9 +6,9 @@ use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch3_bushing::hysteresis::{
     Hysteresis, first_harmonic, of_complex_stiffness, of_loop, of_steps,
 };
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::solid::rubber::harmonic::complex_stiffness;
-use bearing_dynamics::solver::solid::rubber::sleeve::SleeveMotion;
+use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
+use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
 
 use crate::bushings::{
     BUSHING, MODULUS, bonded, exact, four_nodes, of_quarter, quarter, rubber, shear_over_modulus,

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use bearing_dynamics::solver::statics::{Condition, StaticOptions, StaticSolution, solve_from};
+use bearing_dynamics::equilibrium::statics::{
+    Condition, StaticOptions, StaticSolution, solve_from,
+};
 use nalgebra::SVector;
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths, known};

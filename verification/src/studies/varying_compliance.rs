@@ -4,12 +4,12 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::solver::dynamics::model::{Drive, DynamicProblem};
-use bearing_dynamics::solver::dynamics::run::Integrator::{DormandPrince, Rosenbrock};
-use bearing_dynamics::solver::profile::Profile;
-use bearing_dynamics::solver::statics::Condition;
+use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::motion::simulation::Integrator::{DormandPrince, Rosenbrock};
+use bearing_dynamics::numeric::profile::Profile;
 
 use super::motion::sentences;
 use super::motion::{LABELS, Measures, Method, Window, errors, follow, limit};

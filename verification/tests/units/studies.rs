@@ -2,10 +2,10 @@
 
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::generate::{RingMesh, ring};
-use bearing_dynamics::solver::dynamics::run::Integrator;
-use bearing_dynamics::solver::solid::model::SolidModel;
-use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
-use bearing_dynamics::solver::solid::tangent::MassMatrix;
+use bearing_dynamics::motion::simulation::Integrator;
+use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::modes::{ModeOptions, modes};
+use bearing_dynamics::solids::tangent::MassMatrix;
 use verification::pareto::Point;
 use verification::solid_bodies::thin_ring;
 use verification::solids::{STEEL, free_body, mesh_of};

@@ -1,10 +1,10 @@
 //! Columns of the energy and of the ledger of what moves.
 
+use crate::assembly::lists::{Assembly, BallMeeting, Bearing};
+use crate::assembly::state::Ledger;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::TractionLaw;
-use crate::solver::dynamics::assembly::{Assembly, BallMeeting, Bearing};
-use crate::solver::dynamics::run::Snapshot;
-use crate::solver::dynamics::state::Ledger;
+use crate::motion::simulation::Snapshot;
 
 /// Parts of the energy and of the ledger that a problem can have any of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,21 +4,21 @@ mod energy;
 
 use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
+use crate::assembly::channels::ChannelGroup;
+use crate::assembly::lists::{Assembly, Bearing};
+use crate::assembly::mount::Mount;
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::motion::channel_group;
+use crate::assembly::state::{POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::slices::{Motion, Sliding, sliding};
 use crate::kinematics::vec3::{dot, scale, sub};
+use crate::members::ball_set::BallSet;
+use crate::members::flexible_shaft::ElasticShaft;
+use crate::members::rigid_body::{BodyKinematics, Wrench, tilts_of};
+use crate::members::sensor::Sensor;
+use crate::motion::simulation::{Simulation, Snapshot};
 use crate::output::series::Column;
-use crate::solver::channels::ChannelGroup;
-use crate::solver::dynamics::assembly::{Assembly, Bearing};
-use crate::solver::dynamics::ball_set::BallSet;
-use crate::solver::dynamics::race::{RaceLoads, RaceNow, tilts_of};
-use crate::solver::dynamics::run::{Simulation, Snapshot};
-use crate::solver::dynamics::sensor::Sensor;
-use crate::solver::dynamics::shaft::ElasticShaft;
-use crate::solver::dynamics::state::{POSITION, SPIN, VELOCITY};
-use crate::solver::mount::Mount;
-use crate::solver::plan::Stage;
-use crate::solver::plan::motion::channel_group;
 use energy::{Term, energy_term, term_name, terms};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -88,8 +88,7 @@ impl Recorder {
             if group == ChannelGroup::Forces {
                 for index in 0..system.connections.len() {
                     if system.assembly.connections[index].label.is_some() {
-                        let RaceLoads { force, moment } =
-                            system.pull(&simulation.state, index).on[1];
+                        let Wrench { force, moment } = system.pull(&simulation.state, index).on[1];
                         self.values.extend(force.into_iter().chain(moment));
                     }
                 }
@@ -154,7 +153,7 @@ impl Recorder {
     }
 
     /// A race, X from `place` on (m), where its bearing sits, [`facing`] this way.
-    fn race(&mut self, now: &RaceNow, place: f64, facing: f64) {
+    fn race(&mut self, now: &BodyKinematics, place: f64, facing: f64) {
         let [x, y, z] = now.state.position;
         let axis = scale(now.motion.axis, facing);
         self.values.extend([x - place, y, z]);

@@ -2,7 +2,7 @@
 
 use bearing_dynamics::mesh::generate::CageMesh;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
+use bearing_dynamics::solids::model::{SolidModel, SolidProblem};
 
 use super::ring::oval_shape;
 use super::{

@@ -1,7 +1,7 @@
 //! The clamped beam: deflection of its tip, first natural frequency.
 
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
+use bearing_dynamics::solids::model::{SolidModel, SolidProblem};
 
 use super::{
     Limit, conclude, explicit_sentence, frequency_by_modes, frequency_by_steps, off, record,

@@ -12,10 +12,10 @@ pub mod cantilever;
 pub mod ring;
 
 use bearing_dynamics::mesh::TetMesh;
-use bearing_dynamics::solver::solid::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solver::solid::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::modes::{ModeOptions, modes};
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
+use bearing_dynamics::solids::model::{SolidModel, SolidProblem};
+use bearing_dynamics::solids::modes::{ModeOptions, modes};
 
 use crate::case::CaseError;
 use crate::pareto::{ParetoContext, Point, Stopwatch, cheapest_ways};

@@ -3,8 +3,8 @@
 use bearing_dynamics::kinematics::strain::principal;
 use bearing_dynamics::mesh::generate::{RingMesh, ring};
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solver::solid::model::{SolidModel, SolidProblem};
-use bearing_dynamics::solver::solid::stress::nodal_stresses;
+use bearing_dynamics::solids::model::{SolidModel, SolidProblem};
+use bearing_dynamics::solids::stress::nodal_stresses;
 
 use super::{
     conclude, explicit_sentence, frequency_by_modes, frequency_by_steps, off, record, settle, timed,

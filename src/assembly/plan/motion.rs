@@ -1,0 +1,387 @@
+//! Items of a motion: what each evaluation of the forces computes, how it starts and steps, what it records.
+
+use crate::assembly::channels::ChannelGroup;
+use crate::assembly::lists::{Assembly, BallMeeting, Bearing, Body, GROUND, Mobility};
+use crate::assembly::loads::{Drive, DrivenBody, Rotation};
+use crate::assembly::plan::shaft::bending;
+use crate::assembly::plan::{Item, Stage, Subject};
+use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
+use crate::ch2_housing::bearing::contact::ContactDamping;
+use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch4_rotor::bore_friction::BoreFriction;
+use crate::members::ball_set::neighbours;
+use crate::members::dent_table::Fineness;
+use crate::motion::simulation::{Integrator, RunOptions, Start, Stepping};
+use crate::numeric::clock::rounded;
+
+/// A run of an assembly.
+#[derive(Clone, Debug)]
+pub struct Planned<'p> {
+    pub assembly: &'p Assembly,
+    pub options: &'p RunOptions,
+    pub channels: &'p [ChannelGroup],
+    /// Why each bearing has no cage, where its scene has one.
+    pub cage_left_out: &'p [Option<&'p str>],
+    /// Of flexible solids, and of those that take steps of their own.
+    pub solids: Vec<Item>,
+}
+
+/// Items of a run: start and step, one evaluation, solids, records.
+pub fn items(run: Planned) -> Vec<Item> {
+    let Planned { assembly, options, channels, cage_left_out, solids } = run;
+    let mut items = vec![start(options.start), step_size(options)];
+    items.extend(evaluation(assembly, cage_left_out));
+    if solids.is_empty() && assembly.solids.is_empty() {
+        items.push(no_solids());
+    }
+    items.extend(solids);
+    items.extend(ChannelGroup::ALL.map(|group| channel_group(assembly, channels, group)));
+    if !assembly.sensors.is_empty() {
+        let names: Vec<&str> = assembly.sensors.iter().map(|of| of.name.as_str()).collect();
+        let why = format!("{}: read at every output", names.join(", "));
+        items.push(Item::does(Stage::Sensors, Subject::Whole, why));
+    }
+    items
+}
+
+/// Of what has no flexible solid.
+pub fn no_solids() -> Item {
+    let why = "the scene has no solid: no element stage";
+    Item::skips(Stage::FlexibleBodies, Subject::Whole, why)
+}
+
+/// Items of one evaluation of the forces, in the order of the work.
+///
+/// `cage_left_out` is why a bearing has no cage, where its scene has one; one for each bearing, or none.
+pub fn evaluation(assembly: &Assembly, cage_left_out: &[Option<&str>]) -> Vec<Item> {
+    let mut items = Vec::new();
+    for (index, bearing) in assembly.bearings.iter().enumerate() {
+        let left_out = cage_left_out.get(index).copied().flatten();
+        items.extend(of_bearing(bearing, Subject::Bearing(index), left_out));
+    }
+    items.push(springs(assembly));
+    items.extend(reduced_solids(assembly));
+    items.extend(assembly.shafts.iter().flat_map(|shaft| bending(shaft, assembly)));
+    items.push(gravity(assembly));
+    let bodies = || assembly.bodies.iter().enumerate();
+    items.extend(bodies().filter_map(|(index, body)| motion(body, Subject::Body(index))));
+    let each = |stage: Stage, none: &str, why: &str, has: &dyn Fn(&Body) -> bool| {
+        let with = bodies().filter(|(_, body)| has(body));
+        let found: Vec<Item> = with
+            .map(|(index, body)| {
+                let item = Item::does(stage, Subject::Body(index), format!("{why} {}", body.name));
+                item.named(body.label.clone()).costing(1)
+            })
+            .collect();
+        match found.is_empty() {
+            true => vec![Item::skips(stage, Subject::Whole, none)],
+            false => found,
+        }
+    };
+    let ground = "springs or dashpots to the ground under";
+    items.extend(each(Stage::Foundation, "no spring or dashpot to the ground", ground, &|body| {
+        body.driven().is_some_and(stands_on_ground)
+    }));
+    items.extend(each(Stage::RotatingLoad, "none is given", "given; on", &|body| {
+        body.driven().is_some() && body.rotating_load.is_some()
+    }));
+    let along_shafts = assembly.shafts.iter().any(|shaft| !shaft.unbalances.is_empty());
+    let none = match along_shafts {
+        true => "those along shafts that bend are among their loads",
+        false => "none is given",
+    };
+    items.extend(each(Stage::Unbalance, none, "given; of", &|body| {
+        body.driven().is_some() && body.unbalance != 0.0
+    }));
+    let kept = "work and losses, in every evaluation";
+    items.push(Item::does(Stage::Ledger, Subject::Whole, kept).costing(1));
+    items
+}
+
+fn of_bearing(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item> {
+    let balls = bearing.geometry.ball_count;
+    let why = format!("{balls} balls, two races each; a pair with room costs nothing more");
+    let mut items = vec![
+        Item::does(Stage::DistanceTest, subject, why).costing(2 * balls as u64),
+        traction(bearing, subject),
+        heathcote(bearing, subject),
+        contact_damping(bearing, subject),
+    ];
+    items.extend(dents(bearing, subject));
+    items.extend(cage(bearing, subject, left_out));
+    items.push(ball_contact(bearing, subject));
+    items.into_iter().map(|item| item.named(bearing.name.clone())).collect()
+}
+
+fn springs(assembly: &Assembly) -> Item {
+    match assembly.connections.len() {
+        0 => Item::skips(Stage::Springs, Subject::Whole, "none is given"),
+        some => Item::does(Stage::Springs, Subject::Whole, format!("{some} of them"))
+            .costing(some as u64),
+    }
+}
+
+/// Solids in shapes, and the races in their bores.
+fn reduced_solids(assembly: &Assembly) -> Vec<Item> {
+    let solids = assembly.solids.iter().enumerate().flat_map(|(index, solid)| {
+        let why = "some shapes of the housing, which move with the bearing in its steps";
+        let label = assembly.seats.iter().find(|seat| seat.solid == index);
+        let label = label.and_then(|seat| seat.label.as_ref());
+        let of = label.map_or_else(|| bare(&solid.name), |label| format!("housing {label}"));
+        let subject = Subject::Solid(index);
+        let acts = |stage, does, why: &str| {
+            let why = if does { why } else { "none is given" };
+            Item::new(stage, subject, does, why)
+        };
+        let loads = solid.loads.len();
+        let weighs = solid.weight.iter().any(|weight| *weight != 0.0);
+        let own = [
+            Item::does(Stage::Reduced, subject, why).costing(1),
+            acts(Stage::Loads, loads > 0, &format!("{loads}, on its shapes")),
+            acts(Stage::Gravity, weighs, "on its shapes"),
+            acts(Stage::Damping, solid.damping != 0.0, "mass-proportional, of all motion"),
+        ];
+        own.map(|item| item.named(Some(of.clone())))
+    });
+    let seats = assembly.seats.iter().enumerate().map(|(index, seat)| {
+        let why = format!("{} in its bore, every node of it", assembly.bodies[seat.race.body].name);
+        Item::does(Stage::Seat, Subject::Seat(index), why).named(seat.label.clone()).costing(1)
+    });
+    solids.chain(seats).collect()
+}
+
+/// A race in the bore of a solid with steps of its own: the `index`-th seat, the body and the seat's name.
+pub fn stepped_seat(
+    assembly: &Assembly,
+    index: usize,
+    (body, name): (usize, Option<&str>),
+    friction: Option<&BoreFriction>,
+) -> impl Iterator<Item = Item> {
+    let race = &assembly.bodies[body].name;
+    let why = format!("{race} in its bore, in every step of the housing");
+    let seat = Item::does(Stage::Seat, Subject::Seat(index), why).named(name);
+    let why = format!("on {race}, the mean of each window");
+    let impulses = Item::does(Stage::Impulses, Subject::Body(body), why).named(name);
+    let friction = friction.map(|BoreFriction { coefficient, stretch }| {
+        let why = format!(
+            "a spring at every node that touches, which slips at {coefficient} of the normal load, stretched by {} nm or more",
+            rounded(1e9 * stretch)
+        );
+        Item::does(Stage::BoreFriction, Subject::Seat(index), why).named(name)
+    });
+    [seat].into_iter().chain(friction).chain([impulses])
+}
+
+fn gravity(assembly: &Assembly) -> Item {
+    if assembly.gravity == [0.0; 3] {
+        return Item::skips(Stage::Gravity, Subject::Whole, "none is given");
+    }
+    let balls: usize = assembly.bearings.iter().map(|b| b.geometry.ball_count).sum();
+    let bodies = assembly.bodies.iter().filter(|body| body.moves()).count();
+    Item::does(Stage::Gravity, Subject::Whole, "given; it acts on every body that moves")
+        .costing((balls + bodies) as u64)
+}
+
+/// "outer race" of "the outer race".
+fn bare(name: &str) -> String {
+    name.strip_prefix("the ").unwrap_or(name).into()
+}
+
+/// Of a race or another body; the ground has none.
+fn motion(body: &Body, subject: Subject) -> Option<Item> {
+    let item = match &body.mobility {
+        Mobility::Free(_) => {
+            Item::does(Stage::Motion, subject, "six equations, under its contacts and its weight")
+        }
+        Mobility::Fixed if body.name == GROUND => return None,
+        Mobility::Fixed => {
+            let why = "fixed in space: no equations for it";
+            return Some(Item::skips(Stage::Motion, subject, why).named(Some(bare(&body.name))));
+        }
+        Mobility::Driven(race) => Item::does(Stage::Motion, subject, race_freedom(race)),
+    };
+    Some(item.named(Some(bare(&body.name))).costing(1))
+}
+
+/// Whether a run starts in equilibrium.
+pub fn start(start: Start) -> Item {
+    let (does, why) = match start {
+        Start::Equilibrium => (true, "asked for; balls and cage start rolling"),
+        Start::Nominal => (false, "starts in nominal positions, balls and cage rolling"),
+    };
+    Item::new(Stage::StartEquilibrium, Subject::Whole, does, why)
+}
+
+fn step_size(options: &RunOptions) -> Item {
+    let (does, why) = match options.stepping {
+        Stepping::Accuracy(accuracy) => (
+            false,
+            format!(
+                "{} takes steps as long as an accuracy of {accuracy} allows",
+                options.integrator.name()
+            ),
+        ),
+        Stepping::Fixed(step) if options.integrator != Integrator::RungeKutta => (
+            false,
+            format!("the step is given: {step:e} s; the limit is that of rk4, not looked at here"),
+        ),
+        Stepping::Fixed(step) => (
+            true,
+            format!(
+                "the step is given: {step:e} s; it is held against the limit at the start and \
+                     where contacts get stiffer"
+            ),
+        ),
+        Stepping::FractionOfLimit(fraction) => (
+            true,
+            format!(
+                "the step is {fraction} of it, from the Jacobian at the start; looked at again where \
+                 contacts get stiffer"
+            ),
+        ),
+    };
+    Item::new(Stage::StabilityLimit, Subject::Whole, does, why)
+}
+
+fn traction(bearing: &Bearing, subject: Subject) -> Item {
+    let law = match bearing.traction {
+        TractionLaw::None => {
+            return Item::skips(Stage::Traction, subject, "law none: no slices, no spin moment");
+        }
+        TractionLaw::Constant { .. } => "constant coefficient",
+        TractionLaw::SlideToRoll { .. } => "exponential in the slide-to-roll ratio",
+        TractionLaw::SlipSpeed { .. } => "exponential in the sliding speed",
+        TractionLaw::Table { .. } => "tabulated over the sliding speed",
+    };
+    let slices = bearing.slices;
+    let across = match bearing.points_across {
+        1 => String::new(),
+        points => format!(", {points} points across each"),
+    };
+    let why = format!("{law}; {slices} slices on each loaded contact{across}");
+    Item::does(Stage::Traction, subject, why)
+}
+
+fn heathcote(bearing: &Bearing, subject: Subject) -> Item {
+    let (does, why) = match (bearing.heathcote, &bearing.traction) {
+        (_, TractionLaw::None) => (false, "no slices"),
+        (true, _) => (true, "asked for (Heathcote slip)"),
+        (false, _) => (false, "not asked for: slices lie in a plane"),
+    };
+    Item::new(Stage::CurvedSurface, subject, does, why)
+}
+
+fn contact_damping(bearing: &Bearing, subject: Subject) -> Item {
+    let why = match bearing.damping {
+        ContactDamping::None => {
+            let why = "law none: no damping force, no contact history";
+            return Item::skips(Stage::ContactDamping, subject, why);
+        }
+        ContactDamping::HuntCrossley { .. } => {
+            "Hunt-Crossley, of the present speed: no contact history"
+        }
+        ContactDamping::LankaraniNikravesh { .. } => {
+            "Lankarani-Nikravesh; the speed of approach is kept, once a step"
+        }
+    };
+    let pairs = 2 * bearing.geometry.ball_count as u64;
+    Item::does(Stage::ContactDamping, subject, why).costing(pairs)
+}
+
+/// Of a bearing that has some.
+fn dents(bearing: &Bearing, subject: Subject) -> Option<Item> {
+    if bearing.dents.is_empty() {
+        return None;
+    }
+    let shapes = || bearing.dents.iter().map(|dent| &dent.shape).filter(|shape| !shape.vanishes());
+    let count = shapes().count();
+    if count == 0 {
+        let why = "of no depth: Hertz's law is left as it is";
+        return Some(Item::skips(Stage::Dents, subject, why));
+    }
+    let balls = bearing.geometry.ball_count;
+    let solves = shapes().map(|shape| Fineness::of(shape).solves()).max().unwrap_or(0);
+    let raised = shapes().any(|shape| shape.shoulder_height > 0.0);
+    let takes = if raised { "some ten seconds, with a shoulder" } else { "some seconds" };
+    let why = format!(
+        "{count}, {balls} balls each; a table for each shape first, of at most {solves} solves of a half-space \
+         ({takes}); the equilibrium at the start knows of none"
+    );
+    Some(Item::does(Stage::Dents, subject, why).costing((count * balls) as u64))
+}
+
+fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item> {
+    let Some(cage) = &bearing.cage else {
+        let why = left_out.unwrap_or("the scene has none");
+        let why = format!("{why}: no equations, no pocket tests");
+        return vec![Item::skips(Stage::Pockets, subject, why)];
+    };
+    let balls = bearing.geometry.ball_count;
+    let (guided, why) = match cage.contacts.guidance {
+        Guidance::OuterRace => (true, "on the outer race, at both ends of the cage"),
+        Guidance::InnerRace => (true, "on the inner race, at both ends of the cage"),
+        Guidance::Balls if cage.contacts.pocket == Pocket::Cylindrical => (
+            false,
+            "the balls guide it: no test with a race; round pockets do not hold it across its axis",
+        ),
+        Guidance::Balls => (false, "the balls guide it: no test with a race"),
+    };
+    let guide = Item { cost: guided.then_some(2), ..Item::new(Stage::Guide, subject, guided, why) };
+    let why = format!("{balls} pocket tests");
+    vec![Item::does(Stage::Pockets, subject, why).costing(balls as u64), guide]
+}
+
+fn ball_contact(bearing: &Bearing, subject: Subject) -> Item {
+    let balls = bearing.geometry.ball_count;
+    let stage = Stage::BallContact;
+    match bearing.ball_meeting() {
+        BallMeeting::Tested => {
+            let why = format!("{balls} pairs of neighbours; a pair apart costs a distance test");
+            Item::does(stage, subject, why).costing(neighbours(balls) as u64)
+        }
+        BallMeeting::NoLaw => {
+            Item::skips(stage, subject, "law none: balls that run into each other end the run")
+        }
+        BallMeeting::KeptApart { gap } => {
+            let gap = gap * 1e3;
+            let why = format!("pockets keep balls apart, by {gap:.3} mm at least: no test");
+            Item::skips(stage, subject, why)
+        }
+    }
+}
+
+/// How many of its six coordinates follow from loads.
+fn free_coordinates(body: &DrivenBody) -> usize {
+    let loads = body.drives.iter().filter(|drive| matches!(drive, Drive::Load(_))).count();
+    loads + usize::from(matches!(body.rotation, Rotation::Torque(_)))
+}
+
+/// Which of a race's coordinates follow from loads.
+pub fn race_freedom(body: &DrivenBody) -> String {
+    match free_coordinates(body) {
+        6 => "all six coordinates follow from loads".into(),
+        0 => {
+            "all six coordinates are given and imposed; the work of what drives it is booked".into()
+        }
+        free => format!("{free} of 6 coordinates follow from loads, the others are given"),
+    }
+}
+
+pub(crate) fn stands_on_ground(body: &DrivenBody) -> bool {
+    body.foundation_stiffness.iter().chain(&body.foundation_damping).any(|value| *value != 0.0)
+}
+
+/// Whether a group of channels is recorded.
+pub fn channel_group(assembly: &Assembly, asked: &[ChannelGroup], group: ChannelGroup) -> Item {
+    let needs_cage = matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
+    let (does, why) = if group == ChannelGroup::Energy {
+        (true, "the ledger is always kept")
+    } else if !asked.contains(&group) {
+        (false, "not asked for: not computed")
+    } else if needs_cage && assembly.bearings.iter().all(|bearing| bearing.cage.is_none()) {
+        (false, "no cage takes part")
+    } else {
+        (true, "recorded at every output")
+    };
+    Item::new(Stage::recording(group), Subject::Whole, does, why)
+}

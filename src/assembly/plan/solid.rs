@@ -1,0 +1,149 @@
+//! Items of a flexible solid, by itself or as a housing: what acts on it, and how it is solved for.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::plan::{Item, Stage, Subject, does};
+use crate::motion::coupling::SolidPart;
+use crate::solids::model::{DampedMotion, SolidProblem};
+
+/// How a solid is solved for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Method {
+    Statics,
+    Modes,
+    /// Of a solid by itself; in words how and how far.
+    Steps(String),
+    /// Condensed onto what touches it.
+    QuasiStatic,
+    /// Some shapes that move with the bearing. What each evaluation does to them is among the items of the motion.
+    Reduced,
+    /// In steps of its own, beside the bearing.
+    Explicit,
+}
+
+/// Items of one solid, the `index`-th, named by `of` where it is not alone; `mesh` is what it is made of.
+pub fn items(
+    problem: &SolidProblem,
+    index: usize,
+    of: Option<&str>,
+    mesh: &str,
+    method: &Method,
+) -> Vec<Item> {
+    let subject = Subject::Solid(index);
+    let supports = match problem.prescribed.len() {
+        0 => Item::skips(Stage::Supports, subject, "nothing is held"),
+        count => {
+            let why = format!("{count} components held or moved");
+            Item::does(Stage::Supports, subject, why)
+        }
+    };
+    let mut items = vec![Item::does(Stage::Elements, subject, mesh), supports];
+    if *method != Method::Reduced {
+        items.extend(acting(problem, subject, method));
+    }
+    let own = match method {
+        Method::Statics => {
+            let why = "Newton's method, sparse Cholesky factors";
+            Some(Item::does(Stage::SolidStatics, subject, why))
+        }
+        Method::QuasiStatic => {
+            let why = "condensed onto its bore; bearing and bore in one equilibrium";
+            Some(Item::does(Stage::QuasiStatic, subject, why).costing(1))
+        }
+        Method::Explicit => {
+            let why = "bearing and housing in steps of their own, which exchange impulses";
+            Some(Item::does(Stage::Explicit, subject, why))
+        }
+        Method::Steps(said) => {
+            let item = Item::does(Stage::Explicit, subject, said.clone());
+            return named(items, of).into_iter().chain([item.named(Some("steps"))]).collect();
+        }
+        Method::Modes | Method::Reduced => None,
+    };
+    items.extend(own);
+    named(items, of)
+}
+
+/// Items of a shaft in elements, the `index`-th solid, which is stepped beside the bodies that sit on it.
+pub fn stepped_shaft(
+    assembly: &Assembly,
+    index: usize,
+    (name, part): (&str, &SolidPart),
+    mesh: &str,
+) -> Vec<Item> {
+    let (subject, of) = (Subject::Solid(index), Some(name));
+    let mut items = items(&part.model.problem, index, of, mesh, &Method::Explicit);
+    for item in items.iter_mut().filter(|item| item.stage == Stage::Explicit) {
+        item.why = "elements and bodies in steps of their own, which exchange impulses".into();
+    }
+    let Some(shaft) = &part.shaft else { return items };
+    let (count, unbalances) = (shaft.joints.len(), shaft.unbalances.len());
+    let why = format!(
+        "{count} races and discs on springs to their sections, in every step of the elements"
+    );
+    items.push(Item::new(Stage::Joints, subject, count > 0, why).named(of));
+    let why = format!("{unbalances} at sections");
+    items.push(Item::new(Stage::Unbalance, subject, unbalances > 0, why).named(of));
+    items.extend(shaft.joints.iter().map(|joint| {
+        let why = format!("on {}, the mean of each window", assembly.bodies[joint.body].name);
+        Item::does(Stage::Impulses, Subject::Body(joint.body), why).named(of)
+    }));
+    items
+}
+
+fn named(items: Vec<Item>, of: Option<&str>) -> Vec<Item> {
+    items.into_iter().map(|item| item.named(of)).collect()
+}
+
+/// Loads, gravity and damping.
+fn acting(problem: &SolidProblem, subject: Subject, method: &Method) -> [Item; 3] {
+    const OF_MODES: &str = "modes are those of the unloaded solid, undamped";
+    let skips = |stage, why: &str| Item::skips(stage, subject, why);
+    let does = |stage, why: &str| Item::does(stage, subject, why);
+    let loads = match (problem.loads.len(), method) {
+        (0, _) => skips(Stage::Loads, "none is given"),
+        (_, Method::Modes) => skips(Stage::Loads, OF_MODES),
+        (1, _) => does(Stage::Loads, "one, dead"),
+        (count, _) => does(Stage::Loads, &format!("{count}, dead")),
+    };
+    let gravity = match (problem.gravity == [0.0; 3], method) {
+        (true, _) => skips(Stage::Gravity, "none is given"),
+        (false, Method::Modes) => skips(Stage::Gravity, OF_MODES),
+        (false, _) => does(Stage::Gravity, "on every node's mass"),
+    };
+    let damping = match (problem.damping == 0.0, method) {
+        (true, _) => skips(Stage::Damping, "none is given"),
+        (false, Method::Modes) => skips(Stage::Damping, OF_MODES),
+        (false, Method::Statics | Method::QuasiStatic) => {
+            skips(Stage::Damping, "mass-proportional, in steps; nothing moves in an equilibrium")
+        }
+        (false, _) => match problem.damped_motion {
+            DampedMotion::Absolute => does(Stage::Damping, "mass-proportional, of all motion"),
+            DampedMotion::RelativeToRigid => {
+                does(Stage::Damping, "mass-proportional, of motion beside the rigid one")
+            }
+        },
+    };
+    [loads, gravity, damping]
+}
+
+/// What each evaluation of a solid's forces and each step of it does, read from the items.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SolidSteps {
+    pub supports: bool,
+    pub loads: bool,
+    pub gravity: bool,
+    pub damping: bool,
+}
+
+impl SolidSteps {
+    pub fn new(problem: &SolidProblem, method: &Method) -> SolidSteps {
+        let items = items(problem, 0, None, "", method);
+        let of = |stage| does(&items, stage, Subject::Solid(0));
+        SolidSteps {
+            supports: of(Stage::Supports),
+            loads: of(Stage::Loads),
+            gravity: of(Stage::Gravity),
+            damping: of(Stage::Damping),
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! What each evaluation of a motion does, read once from the items of its plan.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::plan::solid::SolidSteps;
+use crate::assembly::plan::{Item, Stage, Subject, does};
+use crate::members::flexible_shaft::{ElasticShaft, ShaftSteps};
+use crate::members::unbalance::swings;
+
+/// Of one bearing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BearingSteps {
+    pub traction: bool,
+    pub curved: bool,
+    pub damping: bool,
+    pub dents: bool,
+    pub pockets: bool,
+    pub guide: bool,
+    pub ball_contact: bool,
+}
+
+/// Of one body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodySteps {
+    pub foundation: bool,
+    pub rotating_load: bool,
+    pub unbalance: bool,
+    /// An unbalance takes part in the spin, which a torque drives.
+    pub swings: bool,
+}
+
+/// Of a whole assembly.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Steps {
+    pub gravity: bool,
+    pub springs: bool,
+    pub bearings: Vec<BearingSteps>,
+    /// Of each body.
+    pub bodies: Vec<BodySteps>,
+    /// Bodies that have equations, in their order.
+    pub moving: Vec<usize>,
+    /// Reduced solids and the seats in them.
+    pub solids: Vec<(usize, SolidSteps)>,
+    pub seats: Vec<usize>,
+    /// Shafts that bend.
+    pub shafts: Vec<(usize, ShaftSteps)>,
+}
+
+impl Steps {
+    pub fn new(items: &[Item], assembly: &Assembly) -> Steps {
+        let of = |stage: Stage, subject: Subject| does(items, stage, subject);
+        let bearing = |index| {
+            let of = |stage| of(stage, Subject::Bearing(index));
+            BearingSteps {
+                traction: of(Stage::Traction),
+                curved: of(Stage::CurvedSurface),
+                damping: of(Stage::ContactDamping),
+                dents: of(Stage::Dents),
+                pockets: of(Stage::Pockets),
+                guide: of(Stage::Guide),
+                ball_contact: of(Stage::BallContact),
+            }
+        };
+        let body = |index| {
+            let of = |stage| of(stage, Subject::Body(index));
+            BodySteps {
+                foundation: of(Stage::Foundation),
+                rotating_load: of(Stage::RotatingLoad),
+                unbalance: of(Stage::Unbalance),
+                swings: swings(assembly, index),
+            }
+        };
+        let bodies = 0..assembly.bodies.len();
+        let solid = |index| {
+            let of = |stage| of(stage, Subject::Solid(index));
+            let acting = SolidSteps {
+                supports: false,
+                loads: of(Stage::Loads),
+                gravity: of(Stage::Gravity),
+                damping: of(Stage::Damping),
+            };
+            of(Stage::Reduced).then_some((index, acting))
+        };
+        let shaft = |(index, shaft): (usize, &ElasticShaft)| {
+            let acts = |stage| of(stage, Subject::Body(shaft.body));
+            let acting = ShaftSteps { loads: acts(Stage::Loads), damping: acts(Stage::Damping) };
+            acts(Stage::Reduced).then_some((index, acting))
+        };
+        let solids = 0..assembly.solids.len();
+        let seats = 0..assembly.seats.len();
+        Steps {
+            gravity: of(Stage::Gravity, Subject::Whole),
+            springs: of(Stage::Springs, Subject::Whole),
+            bearings: (0..assembly.bearings.len()).map(bearing).collect(),
+            bodies: bodies.clone().map(body).collect(),
+            moving: bodies.filter(|index| of(Stage::Motion, Subject::Body(*index))).collect(),
+            solids: solids.filter_map(solid).collect(),
+            shafts: assembly.shafts.iter().enumerate().filter_map(shaft).collect(),
+            seats: seats.filter(|index| of(Stage::Seat, Subject::Seat(*index))).collect(),
+        }
+    }
+}

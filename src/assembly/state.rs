@@ -1,0 +1,307 @@
+//! Layout of the state vector: one flat array, so that integrators, error control and restart see
+//! plain numbers.
+//!
+//! The balls of each bearing lie component by component (all x, all y, …), padded to whole lanes; bodies
+//! (races, cages, shafts) follow one by one; then the shapes of each reduced solid, how far and how fast; then how
+//! far the springs of Maxwell elements are stretched; the energy ledger comes last.
+
+use crate::assembly::lists::Assembly;
+use crate::kinematics::vec3::Vec3;
+use crate::members::connection::Connection;
+use crate::members::flexible_shaft::ElasticShaft;
+use crate::members::reduced_solid::ReducedSolid;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// Where bodies, solids and ledger are in the state vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Places {
+    first_body: usize,
+    bodies: usize,
+    /// Entries of all reduced solids.
+    of_solids: usize,
+    /// Entries of all Maxwell elements of connections.
+    of_connections: usize,
+    /// Entries of all shafts that bend.
+    of_shafts: usize,
+}
+
+/// Entries that a connection has in the state: six for each Maxwell element.
+fn connection_entries(connection: &Connection) -> usize {
+    6 * connection.maxwell().len()
+}
+
+impl Places {
+    pub fn of(assembly: &Assembly) -> Places {
+        let balls = assembly.bearings.iter().map(|bearing| bearing.geometry.ball_count);
+        Places {
+            first_body: balls.map(ball_entries).sum(),
+            bodies: assembly.bodies.len(),
+            of_solids: assembly.solids.iter().map(|solid| 2 * solid.count()).sum(),
+            of_connections: assembly.connections.iter().map(connection_entries).sum(),
+            of_shafts: assembly.shafts.iter().map(ElasticShaft::entries).sum(),
+        }
+    }
+
+    /// First entries of each reduced solid: so many shapes how far (m), then as many how fast (m/s).
+    pub fn solids(&self, assembly: &Assembly) -> Vec<usize> {
+        let mut next = self.body(self.bodies);
+        let mut first = |solid: &ReducedSolid| {
+            let at = next;
+            next += 2 * solid.count();
+            at
+        };
+        assembly.solids.iter().map(&mut first).collect()
+    }
+
+    /// First entries of each connection's Maxwell elements: six elongations (m, rad) of each.
+    pub fn connections(&self, assembly: &Assembly) -> Vec<usize> {
+        let mut next = self.body(self.bodies) + self.of_solids;
+        let mut first = |connection: &Connection| {
+            let at = next;
+            next += connection_entries(connection);
+            at
+        };
+        assembly.connections.iter().map(&mut first).collect()
+    }
+
+    /// First entries of each shaft that bends, see [`ElasticShaft::entries`].
+    pub fn shafts(&self, assembly: &Assembly) -> Vec<usize> {
+        let mut next = self.body(self.bodies) + self.of_solids + self.of_connections;
+        let mut first = |shaft: &ElasticShaft| {
+            let at = next;
+            next += shaft.entries();
+            at
+        };
+        assembly.shafts.iter().map(&mut first).collect()
+    }
+
+    /// First of the 13 entries of a body.
+    pub fn body(&self, body: usize) -> usize {
+        self.first_body + BODY * body
+    }
+
+    pub fn ledger(&self) -> usize {
+        self.body(self.bodies) + self.of_solids + self.of_connections + self.of_shafts
+    }
+
+    pub fn ledger_entry(&self, entry: Ledger) -> usize {
+        self.ledger() + entry as usize
+    }
+
+    /// Entries of the whole state.
+    pub fn state_len(&self) -> usize {
+        self.ledger() + LEDGER
+    }
+}
+
+/// Lanes that the contact loops run over.
+pub const LANES: usize = 8;
+
+/// Position 3, quaternion 4 (scalar first), velocity 3, spin 3 (inertial axes).
+pub const BODY: usize = 13;
+pub const POSITION: usize = 0;
+pub const ORIENTATION: usize = 3;
+pub const VELOCITY: usize = 7;
+pub const SPIN: usize = 10;
+
+/// Energy taken out of or put into the bodies since the start, J.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ledger {
+    Traction,
+    ContactDamping,
+    CageFriction,
+    /// Dashpots to the ground, between bodies and of reduced solids, or all that a housing in explicit steps does
+    /// to the outer race.
+    Foundation,
+    /// Loads, given motions, and races that grow in their seats.
+    Drives,
+    BallFriction,
+}
+
+pub const LEDGER: usize = 6;
+
+/// Where a bearing's balls and bodies are in the state vector: the balls of all bearings come first, then the
+/// bodies, then the ledger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    pub balls: usize,
+    /// Balls rounded up to whole lanes; the extra ones stand still and touch nothing.
+    pub padded: usize,
+    pub has_cage: bool,
+    /// First entries of the balls, the bodies of both races, the cage (the ledger's if
+    /// there is none) and the ledger.
+    first: usize,
+    races: [usize; 2],
+    cage: usize,
+    ledger: usize,
+}
+
+/// Entries that a bearing's balls take.
+fn ball_entries(balls: usize) -> usize {
+    BODY * balls.next_multiple_of(LANES)
+}
+
+impl Layout {
+    /// Of a bearing alone.
+    pub fn new(balls: usize, has_cage: bool) -> Layout {
+        let inner = ball_entries(balls);
+        let (outer, cage) = (inner + BODY, inner + 2 * BODY);
+        Layout {
+            balls,
+            padded: balls.next_multiple_of(LANES),
+            has_cage,
+            first: 0,
+            races: [inner, outer],
+            cage,
+            ledger: if has_cage { cage + BODY } else { cage },
+        }
+    }
+
+    /// Of each bearing of an assembly.
+    pub fn of(assembly: &Assembly) -> Vec<Layout> {
+        let places = Places::of(assembly);
+        let mut first = 0;
+        let mut layouts = Vec::with_capacity(assembly.bearings.len());
+        for bearing in &assembly.bearings {
+            let balls = bearing.geometry.ball_count;
+            let races = bearing.mounts.map(|mount| places.body(mount.body));
+            layouts.push(Layout {
+                balls,
+                padded: balls.next_multiple_of(LANES),
+                has_cage: bearing.cage.is_some(),
+                first,
+                races,
+                cage: bearing.cage.as_ref().map_or(places.ledger(), |cage| places.body(cage.body)),
+                ledger: places.ledger(),
+            });
+            first += ball_entries(balls);
+        }
+        layouts
+    }
+
+    /// Of the whole state.
+    pub fn len(&self) -> usize {
+        self.ledger() + LEDGER
+    }
+
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// First entry of component `component` (0 … 12) of the balls.
+    #[inline(always)]
+    pub fn ball(&self, component: usize) -> usize {
+        self.first + component * self.padded
+    }
+
+    /// Race (0 inner, 1 outer) and ball of a pair, as [`ContactTable`](crate::members::contacts::ContactTable) counts them.
+    #[inline(always)]
+    pub fn race_and_ball(&self, pair: usize) -> (usize, usize) {
+        let outer = pair >= self.padded;
+        (usize::from(outer), if outer { pair - self.padded } else { pair })
+    }
+
+    pub fn inner(&self) -> usize {
+        self.races[0]
+    }
+
+    pub fn outer(&self) -> usize {
+        self.races[1]
+    }
+
+    /// The cage's 13 entries, if there is one.
+    pub fn cage(&self) -> usize {
+        self.cage
+    }
+
+    pub fn ledger(&self) -> usize {
+        self.ledger
+    }
+
+    pub fn ledger_entry(&self, entry: Ledger) -> usize {
+        self.ledger() + entry as usize
+    }
+
+    /// Three components of a ball from `component` on.
+    pub fn ball_vector(&self, state: &[f64], component: usize, ball: usize) -> Vec3 {
+        [0, 1, 2].map(|i| state[self.ball(component + i) + ball])
+    }
+
+    pub fn set_ball(&self, state: &mut [f64], ball: usize, body: &BodyState) {
+        for (component, value) in body.to_array().into_iter().enumerate() {
+            state[self.ball(component) + ball] = value;
+        }
+    }
+
+    pub fn ball_state(&self, state: &[f64], ball: usize) -> BodyState {
+        let mut entries = [0.0; BODY];
+        for (component, entry) in entries.iter_mut().enumerate() {
+            *entry = state[self.ball(component) + ball];
+        }
+        BodyState::from_slice(&entries)
+    }
+}
+
+/// One body out of the state vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// m.
+    pub position: Vec3,
+    /// Body to inertial.
+    pub orientation: UnitQuaternion<f64>,
+    /// m/s.
+    pub velocity: Vec3,
+    /// Angular velocity in inertial axes, rad/s.
+    pub spin: Vec3,
+}
+
+impl BodyState {
+    pub fn at_rest(position: Vec3) -> BodyState {
+        BodyState {
+            position,
+            orientation: UnitQuaternion::identity(),
+            velocity: [0.0; 3],
+            spin: [0.0; 3],
+        }
+    }
+
+    /// The body whose 13 entries these are. Stages of Runge–Kutta leave the unit quaternions by the
+    /// square of the angle turned; the axis of a race must not get longer by that, since it carries
+    /// overlaps of micrometres.
+    pub fn from_slice(entries: &[f64]) -> BodyState {
+        let vector = |at: usize| [entries[at], entries[at + 1], entries[at + 2]];
+        let q = &entries[ORIENTATION..ORIENTATION + 4];
+        let square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        let q = [0, 1, 2, 3].map(|i| q[i] / square.sqrt());
+        BodyState {
+            position: vector(POSITION),
+            orientation: UnitQuaternion::new_unchecked(Quaternion::new(q[0], q[1], q[2], q[3])),
+            velocity: vector(VELOCITY),
+            spin: vector(SPIN),
+        }
+    }
+
+    pub fn to_array(self) -> [f64; BODY] {
+        let q = self.orientation;
+        let ([x, y, z], [u, v, w], [a, b, c]) = (self.position, self.velocity, self.spin);
+        [x, y, z, q.w, q.i, q.j, q.k, u, v, w, a, b, c]
+    }
+
+    /// Unit vector along the body's X axis, inertial axes.
+    pub fn axis(&self) -> Vec3 {
+        (self.orientation * Vector3::x()).into()
+    }
+}
+
+/// dq/dt = ½ ω q for an angular velocity in inertial axes.
+#[inline(always)]
+pub fn quaternion_rate(q: [f64; 4], spin: Vec3) -> [f64; 4] {
+    let [w, i, j, k] = q;
+    let [x, y, z] = spin;
+    [
+        -0.5 * (x * i + y * j + z * k),
+        0.5 * (x * w + y * k - z * j),
+        0.5 * (y * w + z * i - x * k),
+        0.5 * (z * w + x * j - y * i),
+    ]
+}

@@ -1,0 +1,72 @@
+//! Why there is no equilibrium.
+
+use crate::numeric::clock::display_time;
+use crate::solids::bore_equilibrium::BoreError;
+use thiserror::Error;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum StaticsError {
+    #[error("{what} is {value}: every input of the static problem must be finite")]
+    NotFinite { what: &'static str, value: f64 },
+    #[error(
+        "no equilibrium: {body} leaves its place along {coordinate} \
+         ({travel:.3e} m, farther than the {room:.3e} m it has); nothing holds it \
+         against the load in this direction, or not against so much of it: hold the coordinate by a displacement or a spring{start}, turn the load or take less of it, \
+         or start a motion in nominal positions (numerics.start = \"nominal\")",
+        start = no_hold(coordinate)
+    )]
+    NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
+    #[error(
+        "the damping inside {body} (internal_damping) drags it at this speed as hard as it springs back: rounds over its pull do not \
+         settle; take less of it, a lower speed at the start, or start in nominal positions (numerics.start = \"nominal\")"
+    )]
+    Dragged { body: String },
+    #[error(
+        "the unbalance on {body} tilts it so far that the direction of its own pull changes: rounds over that do not settle; take \
+         less of it, a lower speed at the start, or stiffer supports, or start in nominal positions \
+         (numerics.start = \"nominal\")"
+    )]
+    Unbalanced { body: String },
+    #[error(
+        "nothing holds {body} along {coordinate}: no spring, no given coordinate of it or of the races it is \
+         joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
+         displacement or a spring{start}, balance the loads, or start a motion in nominal positions \
+         (numerics.start = \"nominal\")",
+        at = display_time(*time), start = no_hold(coordinate)
+    )]
+    Unheld { body: String, coordinate: &'static str, load: f64, time: f64 },
+    #[error(
+        "{ball} has found no equilibrium between the races: {unbalance:.1e} of the force on it is \
+         unbalanced; hold or load the inner race differently, or leave the forces on balls out"
+    )]
+    BallNotSettled { ball: String, unbalance: f64 },
+    #[error(
+        "{ball} leaves its grooves: pressed {overlap:.3e} m deep at a contact angle of \
+         {degrees:.1} deg, past the 90 deg where the races hold it; the load is too large for this \
+         bearing, check it and its unit"
+    )]
+    BallOutside { ball: String, overlap: f64, degrees: f64 },
+    #[error(
+        "no equilibrium found in {iterations} iterations: unbalanced load {residual:.3e} N against \
+         {allowed:.3e} N allowed; farthest from it is {body}, at x, y, z {position:?} m, tilts {tilts:?} rad"
+    )]
+    NotConverged {
+        body: String,
+        iterations: usize,
+        residual: f64,
+        allowed: f64,
+        position: [f64; 3],
+        tilts: [f64; 2],
+    },
+    #[error("the outer race{of} in its bore: {source}")]
+    Seat { of: String, source: BoreError },
+}
+
+/// A length in the place of a displacement is a frequent slip.
+fn no_hold(coordinate: &str) -> String {
+    let (kind, unit) =
+        if coordinate.starts_with("tilt") { ("tilt", "deg") } else { ("displacement", "mm") };
+    format!(
+        " ({coordinate} = {{ {kind} = \"0 {unit}\" }} holds it; {coordinate} = \"0 {unit}\" of an outer race is where it starts)"
+    )
+}

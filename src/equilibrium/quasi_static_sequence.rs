@@ -1,0 +1,348 @@
+//! Bearings, bodies and condensed housings along a course of loads, one equilibrium after the other.
+//!
+//! Balls go round at the speed of the cage in pure rolling; nothing is inert but the balls in their orbits. What that
+//! leaves out [`crate::vibrations::quasi_static_limit`] estimates.
+
+use crate::assembly::lists::{Assembly, Body};
+use crate::assembly::loads::Drive;
+use crate::assembly::mount::Mount;
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::counts::StageCounts;
+use crate::assembly::static_lists::{Place, StaticAssembly, StaticBody, StaticSeat};
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::equilibrium::initial::{conditions, orbital_angle, static_assembly};
+use crate::equilibrium::statics::{AssemblySolution, Condition, StaticsError};
+use crate::equilibrium::warm_started_search::{
+    CourseMemory, WarmStartedSearch, load_of_balls, unbalanced,
+};
+use crate::kinematics::Pose;
+use crate::kinematics::euler::quaternion;
+use crate::kinematics::vec3::{Vec3, scale};
+use crate::members::flexible_shaft::{Bend, Section};
+use crate::members::rigid_body::{BodyKinematics, fixed, kinematics_at_mount, tilts_of};
+use crate::numeric::profile::Profile;
+use crate::solids::bore_equilibrium::{Axial, BoreError, Fit, RaceLoad};
+use crate::solids::condensation::CondensedBore;
+use crate::vibrations::quasi_static_limit::MovingBody;
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// What goes through equilibria: bodies under loads that change, and races in housings.
+#[derive(Clone)]
+pub struct QuasiStaticProblem<'b> {
+    pub assembly: Assembly,
+    pub seats: Vec<QuasiStaticFit<'b>>,
+}
+
+/// The outer race of a bearing in the bore of a housing of its own.
+#[derive(Clone)]
+pub struct QuasiStaticFit<'b> {
+    /// As messages and columns name it; `None` for the only one.
+    pub name: Option<String>,
+    /// Index of the bearing.
+    pub bearing: usize,
+    pub bore: &'b CondensedBore,
+    pub penalty: Penalty,
+    /// What holds the race along its axis.
+    pub axial: Axial,
+    /// Of the race, m: an interference grows in.
+    pub radius: Profile,
+    /// Of the housing per mass and velocity, 1/s: what leaving out inertia is judged by knows it.
+    pub damping: f64,
+}
+
+/// All at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// s.
+    pub time: f64,
+    pub solution: AssemblySolution,
+    /// Largest unbalanced load of a race in its bore over the load on it.
+    pub residual: f64,
+    /// Of the nodes that touch.
+    pub contact_changes: usize,
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("at t = {time} s: {source}")]
+pub struct QuasiStaticError {
+    pub time: f64,
+    pub source: StaticsError,
+}
+
+impl QuasiStaticFit<'_> {
+    pub fn fit(&self, t: f64) -> Fit {
+        Fit { radius: self.radius.value(t), axial: self.axial }
+    }
+
+    /// The body that sits there.
+    pub fn body(&self, assembly: &Assembly) -> usize {
+        assembly.bearings[self.bearing].mounts[1].body
+    }
+}
+
+impl<'b> QuasiStaticFit<'b> {
+    /// Puts the race, as large as it is at `t`, in its bore: nothing of that holds it along its axis, so that it stays in
+    /// its place there.
+    pub fn add_to(&self, still: &mut StaticAssembly<'b>, t: f64) {
+        let [inner, outer] = still.bearings[self.bearing].mounts.map(|mount| mount.body);
+        if let Place::Loaded(race) = &mut still.bodies[outer].place
+            && matches!(race.conditions[0], Condition::Load(_))
+        {
+            race.conditions[0] = Condition::Displacement(race.rest[0]);
+        }
+        if still.bearings.len() == 1
+            && let Place::Loaded(race) = &mut still.bodies[inner].place
+        {
+            // Looked for where its load would take it.
+            race.start = None;
+        }
+        still.seats.push(StaticSeat {
+            name: self.name.clone(),
+            mount: Mount::at_centre(outer),
+            nominal: self.bore.reach.nominal,
+            bore: self.bore,
+            penalty: self.penalty,
+            fit: self.fit(t),
+        });
+    }
+}
+
+impl<'b> QuasiStaticProblem<'b> {
+    /// What is in equilibrium at `t`, the balls where they have rolled to.
+    pub fn at(&self, t: f64) -> StaticAssembly<'b> {
+        let bearings = self.assembly.bearings.iter();
+        let turned: Vec<f64> =
+            bearings.map(|bearing| orbital_angle(&self.assembly, bearing, t)).collect();
+        let mut still: StaticAssembly<'b> = static_assembly(&self.assembly, t, &turned);
+        self.seats.iter().for_each(|seat| seat.add_to(&mut still, t));
+        still
+    }
+
+    /// The equilibrium at `t`, looked for from the last one.
+    ///
+    /// # Errors
+    /// None of all together, a load along an axis that nothing takes.
+    pub fn find(
+        &self,
+        search: &mut WarmStartedSearch<'b>,
+        t: f64,
+    ) -> Result<Moment, QuasiStaticError> {
+        self.solve(search, &self.at(t), t).map_err(|source| QuasiStaticError { time: t, source })
+    }
+
+    /// The equilibrium of these lists, made of the same at `t`.
+    ///
+    /// # Errors
+    /// As [`QuasiStaticProblem::find`].
+    pub fn solve(
+        &self,
+        search: &mut WarmStartedSearch<'b>,
+        still: &StaticAssembly<'b>,
+        t: f64,
+    ) -> Result<Moment, StaticsError> {
+        let before = search.contact_changes();
+        let solution = search.solve(still)?;
+        let mut residual = 0.0f64;
+        for (index, seat) in self.seats.iter().enumerate() {
+            let part = self.unbalanced(&solution, index, t).map_err(|source| {
+                let of =
+                    seat.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+                StaticsError::Seat { of, source }
+            })?;
+            residual = residual.max(part);
+        }
+        let contact_changes = search.contact_changes() - before;
+        Ok(Moment { time: t, solution, residual, contact_changes })
+    }
+
+    fn unbalanced(&self, found: &AssemblySolution, seat: usize, t: f64) -> Result<f64, BoreError> {
+        let QuasiStaticFit { bearing, bore, .. } = &self.seats[seat];
+        let body = self.seats[seat].body(&self.assembly);
+        let at = &found.coordinates[body];
+        let position = Vector3::new(at[0], at[1], at[2]);
+        let race = Pose { position, orientation: quaternion(0.0, at[3], at[4]) };
+        let state = &found.bearings[*bearing];
+        let [force, moment] =
+            load_of_balls([state.forces[1], state.moments[1]], &state.balls, &race);
+        let own = own_loads(&self.assembly, &self.assembly.bodies[body], t);
+        let nominal = |of: Vector3<f64>| bore.to_nominal(Vec3::from(of));
+        let on_race = RaceLoad {
+            force: nominal(force + Vector3::new(own[0], own[1], own[2])),
+            moment: nominal(moment + Vector3::new(0.0, own[3], own[4])),
+        };
+        unbalanced(&self.seats[seat].fit(t), &on_race, &found.seats[seat], &state.balls)
+    }
+
+    /// Position from the bearing's place (m) and tilts (rad) of a race of a bearing.
+    pub fn race(&self, found: &AssemblySolution, bearing: usize, side: usize) -> [f64; 5] {
+        let of = &self.assembly.bearings[bearing];
+        let mount = &of.mounts[side];
+        let mut at = found.place(&self.assembly, mount.body);
+        let shaft = self.assembly.shafts.iter().position(|shaft| shaft.body == mount.body);
+        if shaft.is_some() || !mount.is_direct() {
+            let race = match shaft {
+                Some(shaft) => {
+                    let section = self.assembly.shafts[shaft].shapes.section(mount.along);
+                    self.section(found, shaft, &section, mount)
+                }
+                None => kinematics_at_mount(&fixed(&at), mount),
+            };
+            // In the scene's axes, whichever way round it is put in.
+            let axis = scale(race.motion.axis, if mount.reversed { -1.0 } else { 1.0 });
+            let ([x, y, z], [tilt_y, tilt_z]) = (race.state.position, tilts_of(axis));
+            at = [x, y, z, tilt_y, tilt_z];
+        }
+        at[0] -= self.assembly.place_of(of);
+        at
+    }
+
+    /// A section of a body that bends, and what sits there as `mount` says.
+    pub fn section(
+        &self,
+        found: &AssemblySolution,
+        shaft: usize,
+        section: &Section,
+        mount: &Mount,
+    ) -> BodyKinematics {
+        let of = &self.assembly.shafts[shaft];
+        let mut entries = found.amplitudes[shaft].clone();
+        entries.resize(of.entries(), 0.0);
+        let body = fixed(&found.place(&self.assembly, of.body));
+        section.place(&body, mount, &Bend::of(of.count(), &entries)).race
+    }
+
+    /// Whether a race of a bearing may move.
+    pub fn moves(&self, bearing: usize, side: usize) -> bool {
+        let body = self.assembly.bearings[bearing].mounts[side].body;
+        self.assembly.bodies[body].moves()
+    }
+
+    /// The bodies that loads move, with what is inert of them. Along the axis, where bearings are soft and nothing
+    /// drives it, a body under a load that does not change counts as held.
+    pub fn moving(&self) -> Vec<MovingBody> {
+        let still = self.at(0.0);
+        let bodies = still.bodies.iter().zip(&self.assembly.bodies).enumerate();
+        let of = |(index, (still, body)): (usize, (&StaticBody, &Body))| {
+            let Place::Loaded(loaded) = &still.place else { return None };
+            let race = body.driven()?;
+            let mut free = [0, 1, 2, 3, 4].map(|i| loaded.given(i).is_none());
+            free[0] &= !matches!(race.drives[0], Drive::Load(Profile::Constant(_)));
+            Some(MovingBody { body: index, inertia: race.inertia, free })
+        };
+        bodies.filter_map(of).collect()
+    }
+}
+
+/// What acts along a body's coordinates besides contacts and springs.
+fn own_loads(assembly: &Assembly, body: &Body, t: f64) -> [f64; 5] {
+    let Some(race) = body.driven() else { return [0.0; 5] };
+    conditions(assembly, body, race, t).map(|condition| match condition {
+        Condition::Load(load) => load,
+        Condition::Displacement(_) => 0.0,
+    })
+}
+
+/// A course on its way from row to row.
+pub struct Course<'b> {
+    pub problem: QuasiStaticProblem<'b>,
+    search: WarmStartedSearch<'b>,
+    /// Between rows, s.
+    interval: f64,
+    /// Equilibria so far; the first is at the start.
+    pub found: u64,
+    /// The latest one.
+    pub latest: Option<Moment>,
+    pub effort: Effort,
+    /// How often each stage ran.
+    pub ran: StageCounts,
+}
+
+/// What equilibria took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Largest share of the load on a race in its bore that was left unbalanced.
+    pub largest_residual: f64,
+    /// Newton iterations, changes of the nodes that touch.
+    pub iterations: usize,
+    pub contact_changes: usize,
+}
+
+/// What a course goes on from with the same bits.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CourseCheckpoint {
+    /// s.
+    pub time: f64,
+    pub found: u64,
+    pub effort: Effort,
+    pub memory: CourseMemory,
+    /// Nodes of each bore.
+    pub nodes: Vec<usize>,
+}
+
+impl<'b> Course<'b> {
+    /// Before the first equilibrium; rows are `interval` (s) apart.
+    pub fn new(problem: QuasiStaticProblem<'b>, interval: f64) -> Course<'b> {
+        let search = WarmStartedSearch::of(&problem.seats);
+        let effort = Effort::default();
+        Course {
+            problem,
+            search,
+            interval,
+            found: 0,
+            latest: None,
+            effort,
+            ran: StageCounts::default(),
+        }
+    }
+
+    /// Of the latest equilibrium, s.
+    pub fn time(&self) -> f64 {
+        self.found.saturating_sub(1) as f64 * self.interval
+    }
+
+    /// Solves for the next row.
+    ///
+    /// # Errors
+    /// No equilibrium at its time.
+    pub fn find_next(&mut self) -> Result<(), QuasiStaticError> {
+        let time = self.found as f64 * self.interval;
+        let moment = self.problem.find(&mut self.search, time)?;
+        let effort = &mut self.effort;
+        effort.largest_residual = effort.largest_residual.max(moment.residual);
+        effort.iterations += moment.solution.iterations;
+        effort.contact_changes += moment.contact_changes;
+        self.ran.absorb(&moment.solution.ran);
+        self.ran.whole.add(Stage::Equilibria, 1);
+        self.latest = Some(moment);
+        self.found += 1;
+        Ok(())
+    }
+
+    pub fn checkpoint(&self) -> CourseCheckpoint {
+        CourseCheckpoint {
+            time: self.time(),
+            found: self.found,
+            effort: self.effort,
+            memory: self.search.memory(),
+            nodes: self.problem.seats.iter().map(|seat| seat.bore.nodes.len()).collect(),
+        }
+    }
+
+    /// Goes on where a checkpoint of the same course was taken.
+    ///
+    /// # Errors
+    /// As [`WarmStartedSearch::recall`].
+    pub fn restore(&mut self, kept: &CourseCheckpoint) -> Result<(), BoreError> {
+        (self.found, self.effort) = (kept.found, kept.effort);
+        self.search.recall(&kept.memory)
+    }
+
+    /// Displacements of a housing in the latest equilibrium, m; of none without one.
+    pub fn displacement(&self, seat: usize) -> Vec<Vec3> {
+        let (Some(moment), Some(of)) = (&self.latest, self.problem.seats.get(seat)) else {
+            return Vec::new();
+        };
+        of.bore.displacement(&moment.solution.seats[seat].loads)
+    }
+}

@@ -1,0 +1,274 @@
+//! Ball–race contacts of one evaluation: detection for every pair, then traction for the loaded
+//! ones only.
+//!
+//! Two drivers call the same scalar laws: [`Kernel::Scalar`] contact by contact, [`Kernel::Simd`]
+//! over blocks of [`LANES`] contacts. The order of operations within a contact is the same, so the
+//! bits are too.
+
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::counts::Counts;
+use crate::assembly::plan::steps::BearingSteps;
+use crate::assembly::state::{LANES, Layout, POSITION, VELOCITY};
+use crate::ch2_housing::bearing::contact::{
+    RaceContact, RaceLaw, damped_load, normal_load, race_contact,
+};
+use crate::ch2_housing::bearing::slices::{Slices, Sliding, TractionForce, TractionSlope};
+use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::kinematics::vec3::sub;
+use crate::members::contact_traction::{traction_lanes, traction_plain};
+use crate::members::dents;
+use crate::members::dents::{DentOnRace, DentedPair};
+use crate::members::rigid_body::BodyKinematics;
+
+/// Laws that all contacts share.
+#[derive(Clone, Debug)]
+pub struct ContactLaws {
+    /// Inner, outer.
+    pub races: [RaceLaw; 2],
+    pub ball_radius: f64,
+    pub traction: TractionLaw,
+    pub slices: Slices,
+    /// 1/(2R) of the contact surface across each groove, 1/m; zero leaves the Heathcote term out.
+    pub curvature: [f64; 2],
+    /// In either race.
+    pub dents: Vec<DentOnRace>,
+}
+
+/// Result of one evaluation, pair by pair: index = race · padded + ball.
+#[derive(Clone, Debug, Default)]
+pub struct ContactTable {
+    pub contact: Vec<RaceContact>,
+    /// N.
+    pub load: Vec<f64>,
+    /// Traction on the ball.
+    pub traction: Vec<TractionForce>,
+    pub sliding: Vec<Sliding>,
+    /// How traction falls with more sliding, where it was asked for.
+    pub slope: Vec<TractionSlope>,
+    /// Loaded pairs, in order.
+    pub active: Vec<usize>,
+    /// Pairs that a dent has changed, in order; their overlap is w of [`dents`].
+    pub dented: Vec<DentedPair>,
+}
+
+impl ContactTable {
+    pub fn new(layout: &Layout) -> ContactTable {
+        let pairs = 2 * layout.padded;
+        ContactTable {
+            contact: vec![RaceContact::default(); pairs],
+            load: vec![0.0; pairs],
+            traction: vec![TractionForce::default(); pairs],
+            sliding: vec![Sliding::default(); pairs],
+            slope: vec![TractionSlope::default(); pairs],
+            active: Vec::with_capacity(pairs),
+            dented: Vec::with_capacity(pairs),
+        }
+    }
+
+    /// What a dent has made of a pair.
+    pub fn dented(&self, pair: usize) -> Option<&DentedPair> {
+        self.dented.iter().find(|dented| dented.pair == pair)
+    }
+}
+
+/// Work done, for tests that pin it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    pub evaluations: u64,
+    pub distance_tests: u64,
+    pub loaded_contacts: u64,
+    pub slices: u64,
+    pub pocket_tests: u64,
+    pub guide_tests: u64,
+    /// Of neighbouring balls.
+    pub ball_tests: u64,
+    /// Of the matrix of a linearly implicit step.
+    pub factorisations: u64,
+    /// Attempts that the error control threw away.
+    pub rejected_steps: u64,
+}
+
+impl Work {
+    /// Every count in one order, as files keep them.
+    pub fn counts(&mut self) -> [&mut u64; 9] {
+        [
+            &mut self.evaluations,
+            &mut self.distance_tests,
+            &mut self.loaded_contacts,
+            &mut self.slices,
+            &mut self.pocket_tests,
+            &mut self.guide_tests,
+            &mut self.ball_tests,
+            &mut self.factorisations,
+            &mut self.rejected_steps,
+        ]
+    }
+}
+
+/// Whether the slopes of traction are wanted beside the forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Want {
+    Forces,
+    ForcesAndSlopes,
+}
+
+/// Which driver runs the contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    Scalar,
+    Simd,
+}
+
+/// What the contacts of a bearing are found from.
+#[derive(Clone, Copy)]
+pub struct Set<'s> {
+    pub laws: &'s ContactLaws,
+    pub layout: &'s Layout,
+    /// Inner, outer.
+    pub races: [&'s BodyKinematics; 2],
+    /// Factor of each pair, s/m.
+    pub damping: &'s [f64],
+    pub steps: BearingSteps,
+}
+
+/// Contacts of all balls with both races.
+pub fn evaluate(
+    driver: Kernel,
+    set: Set,
+    state: &[f64],
+    want: Want,
+    table: &mut ContactTable,
+    work: &mut Work,
+    ran: &mut Counts,
+) {
+    let Set { laws, layout, races, .. } = set;
+    match (driver, set.steps.damping) {
+        (Kernel::Scalar, true) => detect_plain::<true>(&set, state, table, ran),
+        (Kernel::Scalar, false) => detect_plain::<false>(&set, state, table, ran),
+        (Kernel::Simd, true) => detect_lanes::<true>(&set, state, table, ran),
+        (Kernel::Simd, false) => detect_lanes::<false>(&set, state, table, ran),
+    }
+    if set.steps.dents {
+        dents::apply(&set, state, want, table, ran);
+    }
+    table.active.clear();
+    for race in 0..2 {
+        for ball in 0..layout.balls {
+            let pair = race * layout.padded + ball;
+            if table.load[pair] > 0.0 || table.load[pair].is_nan() {
+                table.active.push(pair);
+            }
+        }
+    }
+    work.distance_tests += 2 * layout.balls as u64;
+    work.loaded_contacts += table.active.len() as u64;
+    if !set.steps.traction {
+        return;
+    }
+    let slices = (table.active.len() * laws.slices.middle.len()) as u64;
+    work.slices += slices;
+    ran.add(Stage::Traction, slices);
+    // Without a curvature the slices lie in a plane.
+    if laws.curvature != [0.0; 2] {
+        ran.add(Stage::CurvedSurface, slices);
+    }
+    match (driver, want) {
+        (Kernel::Scalar, _) => traction_plain(laws, layout, state, races, want, table),
+        (Kernel::Simd, Want::Forces) => {
+            traction_lanes::<false>(laws, layout, state, races, table);
+        }
+        (Kernel::Simd, Want::ForcesAndSlopes) => {
+            traction_lanes::<true>(laws, layout, state, races, table);
+        }
+    }
+}
+
+/// The load of a pair; without damping its factor is not looked at.
+#[inline(always)]
+fn load_of<const DAMPED: bool>(law: &RaceLaw, contact: &RaceContact, factor: f64) -> f64 {
+    if DAMPED {
+        damped_load(law.stiffness, contact.overlap, contact.closing_speed, factor)
+    } else {
+        normal_load(law.stiffness, contact.overlap)
+    }
+}
+
+/// Pairs that have been looked at, and those whose loads were damped.
+fn count_pairs<const DAMPED: bool>(layout: &Layout, ran: &mut Counts) {
+    let pairs = 2 * layout.balls as u64;
+    ran.add(Stage::DistanceTest, pairs);
+    if DAMPED {
+        ran.add(Stage::ContactDamping, pairs);
+    }
+}
+
+fn detect_plain<const DAMPED: bool>(
+    set: &Set,
+    state: &[f64],
+    table: &mut ContactTable,
+    ran: &mut Counts,
+) {
+    let Set { laws, layout, races, damping, .. } = *set;
+    count_pairs::<DAMPED>(layout, ran);
+    for (race, now) in races.into_iter().enumerate() {
+        let motion = &now.motion;
+        for ball in 0..layout.balls {
+            let pair = race * layout.padded + ball;
+            let contact = race_contact(
+                sub(layout.ball_vector(state, POSITION, ball), motion.position),
+                sub(layout.ball_vector(state, VELOCITY, ball), motion.velocity),
+                motion.axis,
+                motion.spin,
+                &laws.races[race],
+            );
+            table.contact[pair] = contact;
+            table.load[pair] = load_of::<DAMPED>(&laws.races[race], &contact, damping[pair]);
+        }
+    }
+}
+
+/// [`LANES`] values of one component, from ball `first` on.
+#[inline(always)]
+pub(crate) fn lane(layout: &Layout, state: &[f64], component: usize, first: usize) -> [f64; LANES] {
+    let at = layout.ball(component) + first;
+    let mut values = [0.0; LANES];
+    values.copy_from_slice(&state[at..at + LANES]);
+    values
+}
+
+fn detect_lanes<const DAMPED: bool>(
+    set: &Set,
+    state: &[f64],
+    table: &mut ContactTable,
+    ran: &mut Counts,
+) {
+    let Set { laws, layout, races, damping, .. } = *set;
+    count_pairs::<DAMPED>(layout, ran);
+    for first in (0..layout.padded).step_by(LANES) {
+        let component = |c: usize| lane(layout, state, c, first);
+        let position = [0, 1, 2].map(|i| component(POSITION + i));
+        let velocity = [0, 1, 2].map(|i| component(VELOCITY + i));
+        for (race, now) in races.into_iter().enumerate() {
+            let motion = &now.motion;
+            let law = &laws.races[race];
+            let pair = race * layout.padded + first;
+            let factor: &[f64] = &damping[pair..pair + LANES];
+            let mut contacts = [RaceContact::default(); LANES];
+            let mut loads = [0.0; LANES];
+            for l in 0..LANES {
+                let at = |v: &[[f64; LANES]; 3]| [v[0][l], v[1][l], v[2][l]];
+                let contact = race_contact(
+                    sub(at(&position), motion.position),
+                    sub(at(&velocity), motion.velocity),
+                    motion.axis,
+                    motion.spin,
+                    law,
+                );
+                contacts[l] = contact;
+                loads[l] = load_of::<DAMPED>(law, &contact, factor[l]);
+            }
+            table.contact[pair..pair + LANES].copy_from_slice(&contacts);
+            table.load[pair..pair + LANES].copy_from_slice(&loads);
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! Frictionless contact of a rigid surface with an elastic half-space: which cells touch and how hard.
+//!
+//! Pressure is uniform on each cell of a rectangular grid; a cell sinks by Love's formula for a uniformly loaded
+//! rectangle (Love 1929; Johnson, Contact Mechanics, 3.25). Where the surface comes to lie,
+//! p ≥ 0, gap ≥ 0 and p·gap = 0 is the minimum of ½ pᵀC p − pᵀ(δ − g) over p ≥ 0, which conjugate gradients find
+//! (Polonsky and Keer, Wear 231, 1999; here at a given approach δ instead of a given load, and over the cells with
+//! pressure alone, until those have settled and the others are looked at).
+//!
+//! The modulus E* is one, since it scales pressures alone.
+
+use std::f64::consts::PI;
+
+/// Cells of a rectangle in rows of equal x, `nx` around the origin; `ny` along y around the origin, or
+/// on the positive side alone where both sides are alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    pub nx: usize,
+    pub ny: usize,
+    /// Size of a cell, m.
+    pub hx: f64,
+    pub hy: f64,
+    /// Whether the side y < 0 is the mirror image.
+    pub mirrored: bool,
+}
+
+impl Grid {
+    /// Middle of a cell by its number, m.
+    pub fn middle(&self, cell: usize) -> [f64; 2] {
+        let [i, j] = [cell / self.ny, cell % self.ny].map(|index| index as f64);
+        let first = if self.mirrored { 0.5 } else { -0.5 * (self.ny as f64 - 1.0) };
+        [(i - 0.5 * (self.nx as f64 - 1.0)) * self.hx, (j + first) * self.hy]
+    }
+
+    pub fn cells(&self) -> usize {
+        self.nx * self.ny
+    }
+}
+
+/// How deep a point sinks at x, y (m) from the middle of a rectangle of half sides a, b (m) under unit pressure
+/// over unit E*, m.
+pub fn love(x: f64, y: f64, a: f64, b: f64) -> f64 {
+    // s ln(t + √(t² + s²)) of the four corners; asinh needs no cancellation where t < 0.
+    let corner = |s: f64, t: f64| {
+        if s == 0.0 { 0.0 } else { s * libm::asinh(t / s.abs()) }
+    };
+    let both = |s: f64, t: f64| corner(s, t) + corner(t, s);
+    let [xp, xm, yp, ym] = [x + a, x - a, y + b, y - b];
+    (both(xp, yp) - both(xp, ym) - both(xm, yp) + both(xm, ym)) / PI
+}
+
+/// Columns of a row of cells, up to `to`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Span {
+    from: usize,
+    to: usize,
+}
+
+/// In each row from the first to the last cell with pressure.
+fn pressed_spans(pressure: &[f64], ny: usize) -> Vec<Span> {
+    let span = |row: &[f64]| Span {
+        from: row.iter().position(|p| *p > 0.0).unwrap_or(0),
+        to: row.iter().rposition(|p| *p > 0.0).map_or(0, |last| last + 1),
+    };
+    pressure.chunks_exact(ny).map(span).collect()
+}
+
+/// What unit pressure on a cell, and on its mirror image, does to every cell, for a grid of one size.
+#[derive(Clone, Debug)]
+pub struct Influence {
+    grid: Grid,
+    /// For rows so far apart and a pressed column, every column.
+    kernel: Vec<f64>,
+}
+
+impl Influence {
+    pub fn new(grid: Grid) -> Influence {
+        let Grid { nx, ny, hx, hy, mirrored } = grid;
+        let at = |apart: f64, across: f64| love(apart * hx, across * hy, 0.5 * hx, 0.5 * hy);
+        let mut kernel = Vec::with_capacity(nx * ny * ny);
+        for apart in 0..nx {
+            for (pressed, sinks) in (0..ny).flat_map(|l| (0..ny).map(move |j| (l, j))) {
+                let (apart, l, j) = (apart as f64, pressed as f64, sinks as f64);
+                let image = if mirrored { at(apart, l + j + 1.0) } else { 0.0 };
+                kernel.push(at(apart, j - l) + image);
+            }
+        }
+        Influence { grid, kernel }
+    }
+
+    /// How deep the cells in `spans`, and up to seven behind each, sink under `pressure`, where each cell of the grid is
+    /// `scale` times as large; others are left as they are.
+    ///
+    /// Some cells of a row at a time, whose sums stay in registers while the kernel goes by; every sum is over the
+    /// pressed cells in their order.
+    fn sink(&self, scale: f64, pressure: &[f64], spans: &[Span], to: &mut [f64]) {
+        let ny = self.grid.ny;
+        let pressed = || (0..pressure.len()).filter(|cell| pressure[*cell] != 0.0);
+        let pressed: Vec<_> =
+            pressed().map(|cell| (cell / ny, cell % ny, scale * pressure[cell])).collect();
+        for ((i, row), span) in to.chunks_exact_mut(ny).enumerate().zip(spans) {
+            let mut j = span.from;
+            while j < span.to {
+                let eights = (span.to - j).div_ceil(8).min((ny - j) / 8);
+                let row = &mut row[j..];
+                j += match eights {
+                    0 if ny - j >= 4 => self.fill::<4>(&pressed, i, j, row),
+                    0 => self.fill::<1>(&pressed, i, j, row),
+                    1 => self.fill::<8>(&pressed, i, j, row),
+                    2 => self.fill::<16>(&pressed, i, j, row),
+                    3 => self.fill::<24>(&pressed, i, j, row),
+                    4 => self.fill::<32>(&pressed, i, j, row),
+                    _ => self.fill::<40>(&pressed, i, j, row),
+                };
+            }
+        }
+    }
+
+    /// Adds what a change of pressure does to the cells in `spans`, by way of `by`; others are worth nothing until all are
+    /// summed again.
+    fn sink_further(
+        &self,
+        scale: f64,
+        change: &[f64],
+        spans: &[Span],
+        by: &mut [f64],
+        sunk: &mut [f64],
+    ) {
+        self.sink(scale, change, spans, by);
+        sunk.iter_mut().zip(by.iter()).for_each(|(sunk, by)| *sunk += by);
+    }
+
+    /// The next `N` cells of a row; how many they are.
+    fn fill<const N: usize>(
+        &self,
+        pressed: &[(usize, usize, f64)],
+        i: usize,
+        j: usize,
+        row: &mut [f64],
+    ) -> usize {
+        row[..N].copy_from_slice(&self.sums::<N>(pressed, i, j));
+        N
+    }
+
+    /// Sums over all pressed cells, as (row, column, pressure), in row `i` from column `j` on.
+    fn sums<const N: usize>(
+        &self,
+        pressed: &[(usize, usize, f64)],
+        i: usize,
+        j: usize,
+    ) -> [f64; N] {
+        let ny = self.grid.ny;
+        let mut sums = [0.0; N];
+        for &(k, l, p) in pressed {
+            let from = (i.abs_diff(k) * ny + l) * ny + j;
+            for (sum, by) in sums.iter_mut().zip(&self.kernel[from..from + N]) {
+                *sum += p * by;
+            }
+        }
+        sums
+    }
+}
+
+/// A contact at a given approach, E* = 1 Pa: multiply by E*.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pressed {
+    /// Over E*, cell by cell.
+    pub pressure: Vec<f64>,
+    /// Load over E*, m².
+    pub load: f64,
+    /// Stored energy over E*, m³.
+    pub energy: f64,
+    /// Steps of conjugate gradients, and looks at the cells without pressure.
+    pub iterations: usize,
+}
+
+/// Cells without pressure are looked at when the gaps of the others are this part of what they were at the last look. Of a dent with
+/// a shoulder that is one iteration in ten, whose sums are three times as long as those over pressed cells alone.
+const LOOK: f64 = 0.05;
+/// Pressure of a cell that joins, in parts of what the last step would give it, or of what closes the gap of a cell alone.
+const JOINING: f64 = 1e-3;
+/// Iterations after which a solve is given up, looks among them; tens are usual.
+const MOST_ITERATIONS: usize = 500;
+
+/// LoadPatterns a rigid surface of `gap`s (m, cell by cell, at no approach) into the half-space by `approach` (m).
+///
+/// Cells of the influence's grid are `scale` times as large. `guess` is a pressure to begin with. The gap in contact
+/// is closed to `tolerance` times the largest overclosure. `None` where conjugate gradients do not get there.
+pub fn press(
+    influence: &Influence,
+    scale: f64,
+    gap: &[f64],
+    approach: f64,
+    guess: Option<&[f64]>,
+    tolerance: f64,
+) -> Option<Pressed> {
+    let grid = influence.grid;
+    let sides = if grid.mirrored { 2.0 } else { 1.0 };
+    let area = sides * scale * scale * grid.hx * grid.hy;
+    let cells = grid.cells();
+    let overclosed = gap.iter().fold(0.0f64, |most, gap| most.max(approach - gap));
+    if overclosed <= 0.0 {
+        return Some(Pressed { pressure: vec![0.0; cells], ..Pressed::default() });
+    }
+    // A first pressure as of a cell by itself over the whole contact: far too small, but where it belongs.
+    let mut p: Vec<f64> = match guess {
+        Some(guess) => guess.iter().map(|p| p.max(0.0)).collect(),
+        None => {
+            let per_depth = 1.0 / (scale * (grid.nx as f64 * grid.hx + grid.ny as f64 * grid.hy));
+            gap.iter().map(|gap| (approach - gap).max(0.0) * per_depth).collect()
+        }
+    };
+    let all = vec![Span { from: 0, to: grid.ny }; grid.nx];
+    let (mut sunk, mut q) = (vec![0.0; cells], vec![0.0; cells]);
+    let (mut t, mut change) = (vec![0.0; cells], vec![0.0; cells]);
+    let (mut before, mut conjugate, mut step) = (1.0, 0.0, 0.0);
+    influence.sink(scale, &p, &all, &mut sunk);
+    // Whether `sunk` is that of all cells, the columns elsewhere, and the gap under pressure when it last was.
+    let (mut everywhere, mut spans, mut looked) = (true, all.clone(), f64::INFINITY);
+    for iteration in 0..MOST_ITERATIONS {
+        // Positive is open, and wants less pressure.
+        let open = |cell: usize, sunk: &[f64]| gap[cell] + sunk[cell] - approach;
+        let (mut square, mut worst) = (0.0, 0.0f64);
+        for cell in (0..cells).filter(|cell| p[*cell] > 0.0) {
+            let r = open(cell, &sunk);
+            square += r * r;
+            worst = worst.max(r.abs());
+        }
+        if !f64::is_finite(square) {
+            return None;
+        }
+        if everywhere {
+            let others = (0..cells).filter(|cell| p[*cell] <= 0.0);
+            let overclosed_now = others.fold(0.0f64, |most, cell| most.max(-open(cell, &sunk)));
+            if worst.max(overclosed_now) <= tolerance * overclosed {
+                let load = p.iter().sum::<f64>() * area;
+                // The minimum, which what is left of the gaps changes to second order only.
+                let inside = gap.iter().zip(&sunk).map(|(gap, u)| approach - gap - 0.5 * u);
+                let energy = p.iter().zip(inside).map(|(p, inside)| p * inside).sum::<f64>() * area;
+                // Cells that are not numbers are neither pressed nor open.
+                return (load + energy).is_finite().then_some(Pressed {
+                    load,
+                    energy,
+                    pressure: p,
+                    iterations: iteration,
+                });
+            }
+            // Overclosed cells without pressure join with hardly any, so that the first step does not send them away
+            // again, and the directions begin anew.
+            change.fill(0.0);
+            let firmness =
+                JOINING * if step > 0.0 { step } else { 1.0 / (scale * influence.kernel[0]) };
+            for cell in 0..cells {
+                let r = open(cell, &sunk);
+                if p[cell] <= 0.0 && r < -tolerance * overclosed {
+                    p[cell] = -firmness * r;
+                    change[cell] = p[cell];
+                }
+            }
+            (spans, looked, everywhere) =
+                (pressed_spans(&p, grid.ny), worst.max(overclosed_now), false);
+            if change.iter().any(|change| *change != 0.0) {
+                influence.sink_further(scale, &change, &spans, &mut q, &mut sunk);
+                conjugate = 0.0;
+                continue;
+            }
+        } else if worst <= (LOOK * looked).max(tolerance * overclosed) {
+            influence.sink(scale, &p, &all, &mut sunk);
+            everywhere = true;
+            continue;
+        }
+        let follow = if before > 0.0 { conjugate * square / before } else { 0.0 };
+        for cell in 0..cells {
+            t[cell] = if p[cell] > 0.0 { open(cell, &sunk) + follow * t[cell] } else { 0.0 };
+        }
+        before = square;
+        influence.sink(scale, &t, &spans, &mut q);
+        let (mut over, mut under) = (0.0, 0.0);
+        for cell in (0..cells).filter(|cell| p[*cell] > 0.0) {
+            over += t[cell] * open(cell, &sunk);
+            under += t[cell] * q[cell];
+        }
+        (step, conjugate) = (if under > 0.0 { over / under } else { 0.0 }, 1.0);
+        change.fill(0.0);
+        for cell in 0..cells {
+            if p[cell] <= 0.0 {
+                continue;
+            }
+            p[cell] -= step * t[cell];
+            sunk[cell] -= step * q[cell];
+            if p[cell] < 0.0 {
+                (change[cell], p[cell], conjugate) = (-p[cell], 0.0, 0.0);
+            }
+        }
+        // What pulled lets go, and the directions begin anew.
+        if conjugate == 0.0 {
+            influence.sink_further(scale, &change, &spans, &mut q, &mut sunk);
+        }
+    }
+    None
+}

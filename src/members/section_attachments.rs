@@ -1,0 +1,131 @@
+//! Where bearings, connections and seats take hold of bodies that bend.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::mount::Mount;
+use crate::members::ball_set::onto_body;
+use crate::members::flexible_shaft::{Bend, ElasticShaft, Section, SectionNow};
+use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
+
+/// One section, as last placed.
+#[derive(Clone, Debug)]
+pub struct SectionAttachment {
+    /// Index in [`Assembly::shafts`].
+    pub shaft: usize,
+    pub section: Section,
+    pub now: SectionNow,
+}
+
+/// Of every mount in an assembly; `None` on bodies that do not bend.
+#[derive(Clone, Debug, Default)]
+pub struct SectionAttachments {
+    /// Inner and outer race of each bearing.
+    pub bearings: Vec<[Option<SectionAttachment>; 2]>,
+    /// Both ends.
+    pub connections: Vec<[Option<SectionAttachment>; 2]>,
+    pub seats: Vec<Option<SectionAttachment>>,
+}
+
+impl SectionAttachments {
+    pub fn new(assembly: &Assembly, bodies: &[BodyKinematics]) -> SectionAttachments {
+        let hold = |mount: &Mount| {
+            let shaft = assembly.shafts.iter().position(|shaft| shaft.body == mount.body)?;
+            let section = assembly.shafts[shaft].shapes.section(mount.along);
+            let unbent = vec![0.0; assembly.shafts[shaft].entries()];
+            let now = section.place(
+                &bodies[mount.body],
+                mount,
+                &Bend::of(section.deflection.len(), &unbent),
+            );
+            Some(SectionAttachment { shaft, section, now })
+        };
+        SectionAttachments {
+            bearings: assembly.bearings.iter().map(|of| of.mounts.each_ref().map(hold)).collect(),
+            connections: assembly
+                .connections
+                .iter()
+                .map(|of| of.ends.each_ref().map(hold))
+                .collect(),
+            seats: assembly.seats.iter().map(|of| hold(&of.race)).collect(),
+        }
+    }
+
+    /// Takes all to where their bodies are, `shafts` the first entries of each in the state.
+    pub fn place(
+        &mut self,
+        assembly: &Assembly,
+        shafts: &[usize],
+        bodies: &[BodyKinematics],
+        state: &[f64],
+    ) {
+        let put = |hold: &mut Option<SectionAttachment>, mount: &Mount| {
+            let Some(hold) = hold else { return };
+            let bend = assembly.shafts[hold.shaft].bend(shafts[hold.shaft], state);
+            hold.now = hold.section.place(&bodies[mount.body], mount, &bend);
+        };
+        for (holds, of) in self.bearings.iter_mut().zip(&assembly.bearings) {
+            holds.iter_mut().zip(&of.mounts).for_each(|(hold, mount)| put(hold, mount));
+        }
+        for (holds, of) in self.connections.iter_mut().zip(&assembly.connections) {
+            holds.iter_mut().zip(&of.ends).for_each(|(hold, mount)| put(hold, mount));
+        }
+        for (hold, of) in self.seats.iter_mut().zip(&assembly.seats) {
+            put(hold, &of.race);
+        }
+    }
+
+    /// Their sections in the order of bearings, connections and seats, with what they sit on.
+    pub fn all<'h>(
+        &'h self,
+        assembly: &'h Assembly,
+    ) -> impl Iterator<Item = (&'h SectionAttachment, Mount)> {
+        let bearings = self.bearings.iter().zip(&assembly.bearings);
+        let bearings = bearings.flat_map(|(holds, of)| holds.iter().zip(of.mounts));
+        let connections = self.connections.iter().zip(&assembly.connections);
+        let connections = connections.flat_map(|(holds, of)| holds.iter().zip(of.ends));
+        let seats = self.seats.iter().zip(assembly.seats.iter().map(|seat| seat.race));
+        let all = bearings.chain(connections).chain(seats);
+        all.filter_map(|(hold, mount)| Some((hold.as_ref()?, mount)))
+    }
+}
+
+impl ElasticShaft {
+    /// How it is bent in a state, its entries from `at` on.
+    pub fn bend<'s>(&self, at: usize, state: &'s [f64]) -> Bend<'s> {
+        Bend::of(self.count(), &state[at..at + self.entries()])
+    }
+
+    /// Rates of its speeds among those of the whole state.
+    pub fn pushes<'r>(&self, at: usize, rates: &'r mut [f64]) -> &'r mut [f64] {
+        &mut rates[at + self.amplitudes()..at + self.entries()]
+    }
+}
+
+/// What sits at a mount, on a section that is held or on a rigid body.
+pub fn kinematics_at_attachment(
+    hold: &Option<SectionAttachment>,
+    body: &BodyKinematics,
+    mount: &Mount,
+) -> BodyKinematics {
+    hold.as_ref().map_or_else(|| kinematics_at_mount(body, mount), |hold| hold.now.race)
+}
+
+/// Shafts, where each begins in the state, and the state.
+pub type Bent<'b> = (&'b [ElasticShaft], &'b [usize], &'b [f64]);
+
+/// Loads at a mount as its body feels them; shapes get theirs.
+pub fn wrench_on_body(
+    (hold, mount): (&Option<SectionAttachment>, &Mount),
+    (sits, body): (&BodyKinematics, &BodyKinematics),
+    loads: &Wrench,
+    (shafts, at, state): Bent,
+    rates: &mut [f64],
+) -> Wrench {
+    match hold {
+        None => onto_body(mount, sits, body, loads),
+        Some(hold) => {
+            let (shaft, at) = (&shafts[hold.shaft], at[hold.shaft]);
+            let bend = shaft.bend(at, state);
+            hold.section.take((body, &bend), &hold.now, loads, shaft.pushes(at, rates))
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Unbalances of bodies (4.3.4): a mass beside the axis, small against the body, with u = m e (kg·m).
+//!
+//! Where the speed is given its force u (Ω² n − Ω̇ τ) is known, n outwards and τ the way it goes round. Where a torque turns the
+//! body Ω̇ is not: besides its own kinetic energy, which the body's has, the mass gives u Ω τ·v, v the velocity where it sits. With q̇ all
+//! velocities but the spin, those of shapes among them, and b = Σ u ∂(τ·v)/∂q̇,
+//!
+//! M q̈ = f − b Ω̇,
+//! I Ω̇ = T − b·q̈,
+//!
+//! f with the centrifugal forces, so that Ω̇ = (T − b·M⁻¹f) / (I − b·M⁻¹b). What the rotor's vibration takes of its spin holds a
+//! run-up by a weak torque back at the critical speed. Weight acts at the unbalance too, which makes the body a pendulum. Left
+//! out is the share that the mass has in the tilting of the body.
+
+use crate::assembly::lists::{Assembly, Body};
+use crate::assembly::loads::{Drive, DrivenBody, Rotation};
+use crate::assembly::mount::Mount;
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use crate::members::flexible_shaft::{Bend, ElasticShaft, Section, SectionNow};
+use crate::members::rigid_body::{BodyKinematics, BodyRates, Wrench};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Outwards and the way it goes round, of an unbalance at `angle` from the Y of what is turned by `orientation` towards its Z.
+pub(crate) fn directions(orientation: &UnitQuaternion<f64>, angle: f64) -> [Vec3; 2] {
+    let (sin, cos) = libm::sincos(angle);
+    [[cos, sin], [-sin, cos]].map(|[y, z]| (orientation * Vector3::new(0.0, y, z)).into())
+}
+
+/// −u Ω ω × τ, N: what turns the momentum u Ω τ of an unbalance with what it sits on, whose angular velocity is ω. It is the
+/// centrifugal force, and a pull along the axis as that tilts.
+pub(crate) fn turning_momentum(size: f64, spin: f64, angular: Vec3, forward: Vec3) -> Vec3 {
+    scale(cross(angular, forward), -size * spin)
+}
+
+/// Whether a torque turns a body that has an unbalance.
+pub fn swings(assembly: &Assembly, body: usize) -> bool {
+    let of = &assembly.bodies[body];
+    let by_torque = of.driven().is_some_and(|of| matches!(of.rotation, Rotation::Torque(_)));
+    let on_shaft = |shaft: &ElasticShaft| shaft.body == body && !shaft.unbalances.is_empty();
+    by_torque && (of.unbalance != 0.0 || assembly.shafts.iter().any(on_shaft))
+}
+
+/// b·M⁻¹b of the unbalances of a shaft that does not bend yet, kg·m²: the inertia about the axis that such masses have at least where
+/// they sit, on a shaft of this mass (kg) and moment of inertia across the axis (kg·m²) and its shapes.
+pub fn least_inertia(shaft: &ElasticShaft, mass: f64, transverse: f64) -> f64 {
+    let along = |direction: usize| {
+        let parts = shaft.unbalances.iter().map(|of| {
+            let (sin, cos) = libm::sincos(of.angle);
+            (of.size * [cos, sin][direction], &of.section)
+        });
+        let parts: Vec<(f64, &Section)> = parts.collect();
+        let sum = |of: &dyn Fn(&Section) -> f64| {
+            parts.iter().map(|(size, section)| size * of(section)).sum::<f64>().powi(2)
+        };
+        let rigid = sum(&|_| 1.0) / mass + sum(&|section| section.along) / transverse;
+        rigid + (0..shaft.count()).map(|k| sum(&|section| section.deflection[k])).sum::<f64>()
+    };
+    along(0) + along(1)
+}
+
+/// A shaft that bends, its entries in the state.
+pub(crate) type Bent<'s> = (&'s ElasticShaft, &'s [f64]);
+
+/// The shaft that bends of a body and its first entry in the state, `firsts` those of all.
+pub(crate) fn bent_of<'s>(
+    assembly: &'s Assembly,
+    firsts: &[usize],
+    body: usize,
+    state: &'s [f64],
+) -> Option<(usize, Bent<'s>)> {
+    let index = assembly.shafts.iter().position(|shaft| shaft.body == body)?;
+    let (shaft, at) = (&assembly.shafts[index], firsts[index]);
+    Some((at, (shaft, &state[at..at + shaft.entries()])))
+}
+
+/// An unbalance where it is: kg·m, outwards and the way it goes round, what it sits on.
+type Turning<'t> = (f64, [Vec3; 2], &'t BodyKinematics);
+
+/// Calls for each unbalance of a body, with the section it is on.
+fn each(
+    (body, now): (&Body, &BodyKinematics),
+    bent: Option<Bent>,
+    mut act: impl FnMut(Turning, Option<(&Section, &SectionNow, &Bend)>),
+) {
+    if body.unbalance != 0.0 {
+        act((body.unbalance, directions(&now.state.orientation, 0.0), now), None);
+    }
+    let Some((shaft, entries)) = bent else { return };
+    let bend = Bend::of(shaft.count(), entries);
+    let mount = Mount::at_centre(shaft.body);
+    for of in &shaft.unbalances {
+        let here = of.section.place(now, &mount, &bend);
+        let directions = directions(&here.race.state.orientation, of.angle);
+        act((of.size, directions, &here.race), Some((&of.section, &here, &bend)));
+    }
+}
+
+/// Kinetic energy u Ω τ·v that the unbalances of a body turned by a torque add, and what lies in their weight, J.
+pub(crate) fn energies(
+    of: (&Body, &BodyKinematics),
+    bent: Option<Bent>,
+    gravity: Vec3,
+) -> [f64; 2] {
+    let spin = dot(of.1.motion.spin, of.1.motion.axis);
+    let mut energies = [0.0; 2];
+    each(of, bent, |(size, [outwards, forward], race), _| {
+        energies[0] += size * spin * dot(forward, race.motion.velocity);
+        energies[1] -= size * dot(gravity, outwards);
+    });
+    energies
+}
+
+/// What Ω̇ = 1 rad/s² makes the unbalances of a body load it with, negated: b.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct UnbalanceCoupling {
+    on_body: Wrench,
+    /// On the shapes of its shaft, as [`crate::members::flexible_shaft::Section::take`] has them.
+    on_shapes: Vec<f64>,
+}
+
+impl UnbalanceCoupling {
+    /// With room for the shafts of an assembly.
+    pub(crate) fn new(assembly: &Assembly) -> UnbalanceCoupling {
+        let most = assembly.shafts.iter().map(ElasticShaft::amplitudes).max();
+        UnbalanceCoupling { on_body: Wrench::default(), on_shapes: vec![0.0; most.unwrap_or(0)] }
+    }
+
+    /// Takes the unbalances of a body where they are, and adds their weight, which pulls where they are, to its loads.
+    pub(crate) fn update(
+        &mut self,
+        of: (&Body, &BodyKinematics),
+        bent: Option<Bent>,
+        gravity: Vec3,
+        pushes: &mut [f64],
+        loads: &mut Wrench,
+    ) {
+        let UnbalanceCoupling { on_body, on_shapes } = self;
+        *on_body = Wrench::default();
+        on_shapes.fill(0.0);
+        each(of, bent, |(size, [outwards, forward], _), section| {
+            let force = Wrench { force: scale(forward, size), moment: [0.0; 3] };
+            // About the axis: across it weight is balanced by what the mass does as the body tilts, which is left out.
+            let axis = of.1.motion.axis;
+            let pull = add_scaled(gravity, -dot(gravity, axis), axis);
+            let moment = scale(cross(outwards, pull), size);
+            let weight = Wrench { force: [0.0; 3], moment };
+            match section {
+                None => {
+                    on_body.add(&force);
+                    loads.add(&weight);
+                }
+                Some((section, here, bend)) => {
+                    on_body.add(&section.take((of.1, bend), here, &force, on_shapes));
+                    loads.add(&section.take((of.1, bend), here, &weight, pushes));
+                }
+            }
+        });
+    }
+
+    /// Adds to the loads of a body and its shapes what the unbalances do as its spin changes. `free` are the rates without
+    /// that, `pushes` the accelerations of the shapes.
+    pub(crate) fn add_to(
+        &self,
+        (body, now): (&DrivenBody, &BodyKinematics),
+        free: &BodyRates,
+        pushes: &mut [f64],
+        loads: &mut Wrench,
+    ) {
+        let Wrench { force, moment } = self.on_body;
+        let (axis, spin) = (now.motion.axis, now.motion.spin);
+        let tilting = add_scaled(spin, -dot(spin, axis), axis);
+        // dω/dt across the axis has a part Ω ȧ, which belongs to the spin that turns with the axis.
+        let turned = scale(cross(tilting, axis), dot(spin, axis));
+        let tilted = sub(free.spin_rate, turned);
+        let inertia = &body.inertia;
+        let of_shapes = self.on_shapes.iter().zip(&*pushes);
+        let taken = dot(force, free.acceleration)
+            + dot(moment, tilted)
+            + of_shapes.map(|(swing, push)| swing * push).sum::<f64>();
+        let moved = |given: &Drive| matches!(given, Drive::Load(_));
+        let across = (0..3).filter(|&i| moved(&body.drives[i])).map(|i| force[i] * force[i]);
+        let about = now.tilt_directions.iter().zip(&body.drives[3..]);
+        let about = about.filter(|(_, drive)| moved(drive)).map(|(e, _)| dot(moment, *e).powi(2));
+        let given_way = across.sum::<f64>() / inertia.mass
+            + about.sum::<f64>() / inertia.transverse
+            + self.on_shapes.iter().map(|swing| swing * swing).sum::<f64>();
+        let own = dot(free.spin_rate, axis);
+        // A mass beside the axis has an inertia of its own, which is part of the body's: a body without it is none, whose
+        // motion has no value.
+        let left = Some(inertia.axial - given_way).filter(|left| *left > 0.0);
+        let rate = (inertia.axial * own - taken) / left.unwrap_or(f64::NAN);
+        loads.force = add_scaled(loads.force, -rate, force);
+        let on_axis = inertia.axial * (rate - own);
+        loads.moment = add(loads.moment, add_scaled(scale(moment, -rate), on_axis, axis));
+        for (push, swing) in pushes.iter_mut().zip(&self.on_shapes) {
+            *push -= rate * swing;
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! Reduced solids in the matrix of a linearly implicit step: their shapes are eliminated into the hubs of the races that sit in them.
+//!
+//! With D the diagonal of the shapes' own equations, S what they are at the nodes that touch, L the levers of hubs there and k the
+//! nodes' stiffness, rates q of shapes and h of hubs push each node by p = hγ k (S (u + hγ q) + L (m + hγ h)), where u and m are the
+//! displacements in the right-hand side. So D q = f − Sᵀp, and what is left is one equation for each node that touches,
+//! (1/(h²γ² k) + S D⁻¹ Sᵀ) p = S (D⁻¹ f + u/hγ) + L (h + m/hγ). Where more nodes touch than there are shapes, in a tight fit of a fine
+//! mesh, the shapes' own equations with the nodes' springs in them are the fewer ones, D + h²γ² Sᵀ k S.
+
+use crate::members::reduced_solid::Surface;
+use crate::motion::elimination::LdltMatrix;
+use crate::motion::linearised::{Linearised, SeatRow, Shapes};
+use crate::motion::system::System;
+
+/// Shapes that are added to the matrix at a time: each pass over it is memory traffic.
+const TOGETHER: usize = 4;
+
+/// Of one solid: its part of the matrix, and room to solve with it.
+#[derive(Clone, Debug)]
+pub(crate) struct SolidBlock {
+    /// Seats in it by their numbers in [`Linearised::seats`], and its surface under each.
+    seats: Vec<(usize, SeatShapes)>,
+    /// Of the races in them, in order.
+    hubs: Vec<usize>,
+    /// Nodes that touch, with the number of their seat above.
+    rows: Vec<(usize, SeatRow)>,
+    /// D⁻¹.
+    yielding: Vec<f64>,
+    /// Whether the equations are those of the shapes.
+    by_shapes: bool,
+    /// Factored, and its inverse times what couples it to each hub: L, or B = h²γ² Sᵀ k L.
+    matrix: LdltMatrix,
+    levered: Vec<Vec<[f64; 6]>>,
+    coupled: Vec<Vec<[f64; 6]>>,
+    /// p of each node that touches, and f and D⁻¹ f + u/hγ of each shape.
+    pushes: Vec<f64>,
+    forces: Vec<f64>,
+    gone: Vec<f64>,
+    /// Some shapes at the nodes that touch.
+    columns: [Vec<f64>; TOGETHER],
+}
+
+#[derive(Clone, Debug)]
+struct SeatShapes {
+    hub: Option<usize>,
+    surface: Surface,
+    by_node: Vec<f64>,
+    outward: Vec<f64>,
+}
+
+impl SolidBlock {
+    /// Of solid `index`.
+    pub(crate) fn new(system: &System, linearised: &Linearised, index: usize) -> SolidBlock {
+        let seats = linearised.seats.iter().enumerate().filter(|(_, joint)| joint.solid == index);
+        let seats: Vec<(usize, SeatShapes)> = seats
+            .map(|(number, joint)| {
+                let seat = &system.assembly.seats[number];
+                let surface = system.assembly.solids[index].surfaces[seat.surface].clone();
+                let (by_node, outward) = (surface.by_node(), vec![0.0; surface.nodes.len()]);
+                (number, SeatShapes { hub: joint.hub, surface, by_node, outward })
+            })
+            .collect();
+        let mut hubs: Vec<usize> = seats.iter().filter_map(|(_, seat)| seat.hub).collect();
+        hubs.sort_unstable();
+        hubs.dedup();
+        let nodes = seats.iter().map(|(_, seat)| seat.outward.len()).sum();
+        let shapes = linearised.solids[index].stiffness.len();
+        SolidBlock {
+            rows: Vec::with_capacity(nodes),
+            yielding: vec![0.0; shapes],
+            matrix: LdltMatrix::new(nodes.max(shapes)),
+            by_shapes: false,
+            levered: hubs.iter().map(|_| Vec::with_capacity(nodes.max(shapes))).collect(),
+            coupled: hubs.iter().map(|_| Vec::with_capacity(shapes)).collect(),
+            pushes: Vec::with_capacity(nodes),
+            forces: vec![0.0; shapes],
+            gone: vec![0.0; shapes],
+            columns: std::array::from_fn(|_| Vec::with_capacity(nodes)),
+            seats,
+            hubs,
+        }
+    }
+
+    /// Factors it for hγ = `scale`, and adds to `schur` how the nodes that touch hold the hubs.
+    pub(crate) fn factor(
+        &mut self,
+        linearised: &Linearised,
+        solid: &Shapes,
+        scale: f64,
+        schur: &mut LdltMatrix,
+    ) {
+        let SolidBlock { seats, rows, yielding, matrix, by_shapes, .. } = self;
+        for (yielding, stiffness) in yielding.iter_mut().zip(&solid.stiffness) {
+            *yielding = 1.0 / (1.0 + scale * (solid.damping + scale * stiffness));
+        }
+        rows.clear();
+        for (own, (number, _)) in seats.iter().enumerate() {
+            rows.extend(linearised.seats[*number].nodes.iter().map(|row| (own, *row)));
+        }
+        *by_shapes = rows.len() > yielding.len();
+        if *by_shapes {
+            self.factor_shapes(scale, schur);
+            return;
+        }
+        matrix.resize(rows.len());
+        for (i, (_, row)) in rows.iter().enumerate() {
+            *matrix.at(i, i) = 1.0 / (scale * scale * row.stiffness);
+        }
+        self.add_shapes();
+        self.matrix.factor();
+        self.hold(schur);
+    }
+
+    /// D + h²γ² Sᵀ k S, and what it and the nodes' springs hold the hubs with.
+    fn factor_shapes(&mut self, scale: f64, schur: &mut LdltMatrix) {
+        let SolidBlock { seats, hubs, rows, yielding, matrix, levered, coupled, .. } = self;
+        let shapes = yielding.len();
+        matrix.resize(shapes);
+        for (k, yielding) in yielding.iter().enumerate() {
+            *matrix.at(k, k) = 1.0 / yielding;
+        }
+        for coupled in coupled.iter_mut() {
+            coupled.clear();
+            coupled.resize(shapes, [0.0; 6]);
+        }
+        for (own, row) in rows.iter() {
+            let seat = &seats[*own].1;
+            let of_node = &seat.by_node[row.node * shapes..][..shapes];
+            let weight = scale * scale * row.stiffness;
+            for (k, shape) in of_node.iter().enumerate() {
+                matrix.add_to_row(k, k, weight * row.along * row.along * shape, &of_node[k..]);
+            }
+            let Some(hub) = seat.hub else { continue };
+            let coupled = hubs.iter().zip(coupled.iter_mut()).filter(|(of, _)| **of == hub);
+            let push = row.lever.map(|lever| weight * row.along * lever);
+            for (to, shape) in coupled.flat_map(|(_, coupled)| coupled).zip(of_node) {
+                (0..6).for_each(|i| to[i] += push[i] * shape);
+            }
+            for i in 0..6 {
+                let (at, push) = (6 * hub + i, weight * row.lever[i]);
+                schur.add_to_row(at, at, push, &row.lever[i..]);
+            }
+        }
+        matrix.factor();
+        for (number, (hub, levered)) in hubs.iter().zip(levered).enumerate() {
+            levered.clone_from(&coupled[number]);
+            matrix.solve_six(levered);
+            for (other, coupled) in hubs.iter().zip(coupled.iter()).take(number + 1) {
+                for (coupled, held) in coupled.iter().zip(levered.iter()) {
+                    for i in 0..6 {
+                        let from = if other == hub { i } else { 0 };
+                        schur.add_to_row(6 * other + i, 6 * hub + from, -coupled[i], &held[from..]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// [`SolidBlock::push`] with the equations of the shapes; what the shapes do where hubs stand still is in `gone` then.
+    fn push_shapes(&mut self, scale: f64, places: &[f64], moved: &[[f64; 6]], to: &mut [f64]) {
+        let SolidBlock { seats, hubs, rows, matrix, coupled, forces, gone, .. } = self;
+        let shapes = forces.len();
+        for (_, seat) in seats.iter_mut() {
+            seat.surface.along_normals(places, &mut seat.outward);
+        }
+        for (own, row) in rows.iter() {
+            let seat = &seats[*own].1;
+            let lever = seat.hub.map_or(0.0, |hub| inner(&row.lever, &moved[hub]));
+            let push = scale * row.stiffness * (row.along * seat.outward[row.node] + lever);
+            let of_node = &seat.by_node[row.node * shapes..][..shapes];
+            forces.iter_mut().zip(of_node).for_each(|(to, shape)| *to -= row.along * push * shape);
+            let Some(hub) = seat.hub else { continue };
+            (0..6).for_each(|j| to[6 * hub + j] -= row.lever[j] * push);
+        }
+        gone.clone_from(forces);
+        matrix.solve(gone);
+        for (hub, coupled) in hubs.iter().zip(coupled) {
+            for (coupled, gone) in coupled.iter().zip(&*gone) {
+                (0..6).for_each(|j| to[6 * hub + j] -= coupled[j] * gone);
+            }
+        }
+    }
+
+    /// S D⁻¹ Sᵀ.
+    fn add_shapes(&mut self) {
+        let SolidBlock { seats, rows, yielding, matrix, columns, .. } = self;
+        let shapes = yielding.len();
+        for first in (0..shapes).step_by(TOGETHER) {
+            let mut factors = [0.0; TOGETHER];
+            for (t, (column, factor)) in columns.iter_mut().zip(&mut factors).enumerate() {
+                column.clear();
+                let Some(yielding) = yielding.get(first + t) else {
+                    column.resize(rows.len(), 0.0);
+                    continue;
+                };
+                *factor = *yielding;
+                column.extend(rows.iter().map(|(own, row)| {
+                    row.along * seats[*own].1.by_node[row.node * shapes + first + t]
+                }));
+            }
+            let [a, b, c, d] = &*columns;
+            for i in 0..rows.len() {
+                let of = [a[i], b[i], c[i], d[i]];
+                let [fa, fb, fc, fd] = std::array::from_fn(|t| factors[t] * of[t]);
+                let row = matrix.row_from(i);
+                for ((((to, a), b), c), d) in
+                    row.iter_mut().zip(&a[i..]).zip(&b[i..]).zip(&c[i..]).zip(&d[i..])
+                {
+                    *to += (fa * a + fb * b) + (fc * c + fd * d);
+                }
+            }
+        }
+    }
+
+    /// Lᵀ times what the levers make, in the upper triangle over hubs.
+    fn hold(&mut self, schur: &mut LdltMatrix) {
+        let SolidBlock { seats, hubs, rows, matrix, levered, .. } = self;
+        for (hub, levered) in hubs.iter().zip(levered) {
+            levered.clear();
+            levered.extend(rows.iter().map(|(own, row)| match seats[*own].1.hub {
+                Some(of) if of == *hub => row.lever,
+                _ => [0.0; 6],
+            }));
+            matrix.solve_six(levered);
+            for ((own, row), held) in rows.iter().zip(levered) {
+                let Some(other) = seats[*own].1.hub.filter(|other| other <= hub) else { continue };
+                for i in 0..6 {
+                    let from = if other == *hub { i } else { 0 };
+                    let held = held.map(|held| row.lever[i] * held);
+                    schur.add_to_row(6 * other + i, 6 * hub + from, 1.0, &held[from..]);
+                }
+            }
+        }
+    }
+
+    /// Takes what the displacements in `r` (hubs: `moved`) and the forces on the shapes push the hubs by from their right-hand sides.
+    pub(crate) fn push(
+        &mut self,
+        solid: &Shapes,
+        scale: f64,
+        r: &[f64],
+        moved: &[[f64; 6]],
+        hubs: &mut [f64],
+    ) {
+        let SolidBlock { seats, rows, yielding, matrix, pushes, forces, gone, .. } = self;
+        let shapes = yielding.len();
+        let (places, speeds) = r[solid.at..solid.at + 2 * shapes].split_at(shapes);
+        for (k, yielding) in yielding.iter().enumerate() {
+            forces[k] = speeds[k] - scale * solid.stiffness[k] * places[k];
+            gone[k] = yielding * forces[k] + places[k] / scale;
+        }
+        if self.by_shapes {
+            self.push_shapes(scale, places, moved, hubs);
+            return;
+        }
+        for (_, seat) in seats.iter_mut() {
+            seat.surface.along_normals(gone, &mut seat.outward);
+        }
+        pushes.clear();
+        pushes.extend(rows.iter().map(|(own, row)| {
+            let seat = &seats[*own].1;
+            let lever = seat.hub.map_or(0.0, |hub| inner(&row.lever, &moved[hub]));
+            row.along * seat.outward[row.node] + lever / scale
+        }));
+        matrix.solve(pushes);
+        for ((own, row), push) in rows.iter().zip(&*pushes) {
+            let Some(hub) = seats[*own].1.hub else { continue };
+            for j in 0..6 {
+                hubs[6 * hub + j] -= row.lever[j] * push;
+            }
+        }
+    }
+
+    /// Rates of the shapes from those of the hubs, after [`SolidBlock::push`].
+    pub(crate) fn follow(
+        &mut self,
+        solid: &Shapes,
+        scale: f64,
+        r: &[f64],
+        rates: &[[f64; 6]],
+        w: &mut [f64],
+    ) {
+        let SolidBlock { seats, hubs, rows, yielding, levered, pushes, forces, gone, .. } = self;
+        let shapes = yielding.len();
+        if self.by_shapes {
+            for (hub, levered) in hubs.iter().zip(levered) {
+                for (gone, held) in gone.iter_mut().zip(levered) {
+                    *gone -= inner(held, &rates[*hub]);
+                }
+            }
+            for (k, rate) in gone.iter().enumerate() {
+                w[solid.at + k] = r[solid.at + k] + scale * rate;
+                w[solid.at + shapes + k] = *rate;
+            }
+            return;
+        }
+        for (hub, levered) in hubs.iter().zip(levered) {
+            for (push, held) in pushes.iter_mut().zip(levered) {
+                *push += inner(held, &rates[*hub]);
+            }
+        }
+        for ((own, row), push) in rows.iter().zip(&*pushes) {
+            let by = row.along * push;
+            let shapes = &seats[*own].1.by_node[row.node * shapes..][..shapes];
+            forces.iter_mut().zip(shapes).for_each(|(to, shape)| *to -= by * shape);
+        }
+        let at = solid.at;
+        for (k, (force, yielding)) in forces.iter().zip(&*yielding).enumerate() {
+            let rate = force * yielding;
+            w[at + k] = r[at + k] + scale * rate;
+            w[at + shapes + k] = rate;
+        }
+    }
+}
+
+fn inner(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

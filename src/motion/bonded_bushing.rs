@@ -1,0 +1,500 @@
+//! A bushing of rubber elements bonded between two bodies, in steps of its own between two exchanges with them.
+//!
+//! Nodes of its sleeves go where the bodies take them, which have these nodes' mass; what the elements pull there
+//! with is summed over a window and given to the bodies, as of a seat.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::plan::counts::Counts;
+use crate::assembly::state::BodyState;
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, scale, sub};
+use crate::members::connection::{Connection, Law};
+use crate::members::rigid_body::Wrench;
+use crate::motion::race_in_bore::{carried_on, mean_over, work_on_way};
+use crate::motion::simulation::Simulation;
+use crate::numeric::profile::Profile;
+use crate::solids::explicit::ExplicitSolid;
+use crate::solids::model::Prescribed;
+use crate::solids::rubber::error::RubberError;
+use crate::solids::rubber::explicit::RubberBody;
+use crate::solids::rubber::harmonic::complex_stiffness;
+use crate::solids::rubber::measures::RubberLedger;
+use crate::solids::rubber::model::RubberModel;
+use crate::solids::rubber::sleeve::SleeveMotion;
+use crate::solids::rubber::steps::{RubberSolid, StepOptions};
+use crate::solids::tet4_blocks::Node;
+use nalgebra::Vector3;
+
+/// A bushing that takes part, as it starts.
+#[derive(Clone, Debug)]
+pub struct BondedPart<'p> {
+    /// As columns and messages name it.
+    pub name: String,
+    /// The bodies of its outer and of its inner sleeve, and where on their axes the middle of the bushing is.
+    pub sleeves: [Sleeve; 2],
+    /// The springs that it is like, whose equilibrium a run starts from: with the relaxed stiffness of the elements.
+    pub spring: Connection,
+    pub elements: BondedElements<'p>,
+    /// How far a body may swing on it in a window, rad.
+    pub window_phase: f64,
+}
+
+/// Nodes of a bushing that a body carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sleeve {
+    /// Index of the body.
+    pub body: usize,
+    pub nodes: Vec<u32>,
+    /// Of the nodes from the body's centre before anything moves, m.
+    pub arms: Vec<Vec3>,
+    /// Centre of the body then, m.
+    pub nominal: Vec3,
+}
+
+impl BondedPart<'_> {
+    /// Gives its spring the relaxed stiffness of the elements themselves, which coarse ones overrate: where a run starts
+    /// is then their own equilibrium.
+    ///
+    /// # Errors
+    /// Rubber without an equilibrium.
+    pub(crate) fn measure(&mut self) -> Result<(), RubberError> {
+        // The first vector is the answer already.
+        const SETTLED: f64 = 1e-6;
+        let mut model = match self.elements {
+            BondedElements::Implicit { model, .. } => model.clone(),
+            BondedElements::Explicit { body, .. } => body.implicit()?,
+        };
+        let [outer, inner] = &self.sleeves;
+        let second = usize::from(inner.body == self.spring.ends[1].body);
+        let along = self.spring.ends[second].along;
+        let mut stiffness = [0.0; 4];
+        for (motion, stiffness) in SleeveMotion::ALL.into_iter().zip(&mut stiffness) {
+            let held = |node: &u32| (*node, [0.0; 3]);
+            let moved = inner
+                .nodes
+                .iter()
+                .zip(&inner.arms)
+                .map(|(node, [x, y, z])| (*node, motion.displacement([x - along, *y, *z])));
+            let ways = outer.nodes.iter().map(held).chain(moved);
+            let component = |(node, way): (u32, Vec3)| {
+                [0, 1, 2].map(|axis| Prescribed {
+                    node,
+                    axis,
+                    profile: Profile::Constant(way[axis]),
+                })
+            };
+            model.problem.prescribed = ways.flat_map(component).collect();
+            *stiffness = complex_stiffness(&model, 0.0, &[0.0], SETTLED)?[0].storage;
+        }
+        let [radial, axial, torsional, conical] = stiffness;
+        match &mut self.spring.law {
+            Law::SpringDashpot(law) => {
+                law.stiffness = [axial, radial, radial, torsional, conical, conical];
+            }
+            Law::Torsion(law) => law.stiffness = torsional,
+        }
+        Ok(())
+    }
+
+    /// Whether its sleeves are not where they are undeformed.
+    pub(crate) fn is_moved(&self, simulation: &Simulation) -> bool {
+        let moved = |sleeve: &Sleeve| {
+            let body = simulation.body(sleeve.body);
+            sleeve.displacements(&body).any(|(_, u)| u != [0.0; 3])
+        };
+        self.sleeves.iter().any(moved)
+    }
+}
+
+/// How the rubber is solved.
+#[derive(Clone, Debug)]
+pub enum BondedElements<'p> {
+    /// Four-node elements in explicit steps (3.12) of so large a part of the longest one.
+    Explicit { body: &'p RubberBody, fraction: f64 },
+    /// Implicit steps of at most so many seconds, if windows are longer.
+    Implicit { model: &'p RubberModel, step: Option<f64> },
+}
+
+/// The rubber on its way.
+pub enum BondedRubber<'p> {
+    Explicit(Box<ExplicitSolid>),
+    Implicit(Box<RubberSolid<'p>>),
+}
+
+/// A bushing at the present time.
+pub struct BondedBushing<'p> {
+    pub name: String,
+    pub sleeves: [SleeveNow; 2],
+    /// Which of them has the second body of the spring.
+    pub second: usize,
+    pub rubber: BondedRubber<'p>,
+    /// In a window, and how long, s.
+    pub steps: usize,
+    pub step: f64,
+    /// The longest step that the rubber takes, s; without one a window is a step.
+    pub(crate) most: Option<f64>,
+    /// Against a sudden shift (N/m) and turn (N·m/rad) of a body.
+    pub(crate) stiffness: [f64; 2],
+    pub(crate) window_phase: f64,
+}
+
+/// What a bushing does to the body of a sleeve.
+pub struct SleeveNow {
+    pub sleeve: Sleeve,
+    /// On the body in the last step and in the one before it, about the body's centre.
+    pub loads: [Wrench; 2],
+    /// On the body since the start, J.
+    pub work: f64,
+    /// In the present window: the body at the beginning; impulse (N·s) and moment of impulse (N·m·s) on it.
+    pub(crate) from: BodyState,
+    handed: Wrench,
+    /// Mean accelerations of the window before, m/s² and rad/s²: the body goes on with them.
+    pushed: [Vec3; 2],
+    /// The body where the rubber has it.
+    there: BodyState,
+}
+
+/// A bushing at one time, for the ledger, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BondedSnapshot {
+    /// Held by the network and by the springs of the Maxwell elements, and lost in their dashpots: the last two by the
+    /// law of small strain.
+    pub network: f64,
+    pub springs: f64,
+    pub dissipated: f64,
+    /// What the stresses of the Maxwell elements did beyond that law.
+    pub beyond: f64,
+    pub kinetic: f64,
+    /// On both bodies since the start, and on the way to where the rubber has them, half a step off.
+    pub work: f64,
+    pub to_come: f64,
+    /// On the body of each sleeve now, about its centre.
+    pub loads: [Wrench; 2],
+}
+
+impl BondedSnapshot {
+    pub fn held(&self) -> f64 {
+        self.network + self.springs + self.kinetic
+    }
+}
+
+impl Sleeve {
+    /// Where the nodes are displaced to while the body is here, m.
+    fn displacements(&self, body: &BodyState) -> impl Iterator<Item = (u32, Vec3)> + '_ {
+        let shift = sub(body.position, self.nominal);
+        let turn = body.orientation.into_inner();
+        self.nodes.iter().zip(&self.arms).map(move |(node, arm)| {
+            // R r − r without the difference of long vectors.
+            let axis = [turn.i, turn.j, turn.k];
+            let once = cross(axis, *arm);
+            let by = add(scale(once, 2.0 * turn.w), scale(cross(axis, once), 2.0));
+            (*node, add(shift, by))
+        })
+    }
+}
+
+impl SleeveNow {
+    fn new(sleeve: Sleeve, simulation: &Simulation) -> SleeveNow {
+        let from = simulation.body(sleeve.body);
+        let loads = [Wrench::default(); 2];
+        let handed = Wrench::default();
+        let pushed = [[0.0; 3]; 2];
+        SleeveNow { sleeve, loads, work: 0.0, there: from, from, handed, pushed }
+    }
+
+    pub(crate) fn begin_window(&mut self, window: f64, body: BodyState) {
+        let per_time = |now: Vec3, then: Vec3| scale(sub(now, then), 1.0 / window);
+        self.pushed =
+            [per_time(body.velocity, self.from.velocity), per_time(body.spin, self.from.spin)];
+        self.from = body;
+        self.handed = Wrench::default();
+    }
+
+    /// The body `after` s in the window, pushed as in the window before.
+    fn ahead(&self, after: f64) -> BodyState {
+        let mut body = self.from;
+        body.velocity = add_scaled(body.velocity, 0.5 * after, self.pushed[0]);
+        body.spin = add_scaled(body.spin, 0.5 * after, self.pushed[1]);
+        carried_on(&body, after)
+    }
+
+    /// The pulls on its nodes (N) `after` s in the window, over `step` s.
+    fn take(&mut self, after: f64, step: f64, pull: impl Fn(u32) -> Vec3) {
+        let body = self.ahead(after);
+        let mut sum = Wrench::default();
+        for (node, arm) in self.sleeve.nodes.iter().zip(&self.sleeve.arms) {
+            let (arm, force) = (body.orientation * Vector3::from(*arm), pull(*node));
+            sum.add(&Wrench { force, moment: cross(arm.into(), force) });
+        }
+        self.loads = [sum, self.loads[0]];
+        self.handed.force = add_scaled(self.handed.force, step, sum.force);
+        self.handed.moment = add_scaled(self.handed.moment, step, sum.moment);
+    }
+
+    /// What the window's impulse comes to as a load over all of it, N and N·m.
+    pub(crate) fn mean_load(&self, window: f64) -> Wrench {
+        mean_over(&self.handed, window)
+    }
+
+    /// Books what that load did to the body while it came to `to`.
+    pub(crate) fn book(&mut self, window: f64, to: &BodyState) {
+        self.work += work_on_way(&self.mean_load(window), &self.from, to);
+    }
+
+    /// The load now: half a step after that of the last one.
+    fn load_now(&self) -> Wrench {
+        let [last, before] = &self.loads;
+        let on = |last: Vec3, before: Vec3| add_scaled(last, 0.5, sub(last, before));
+        Wrench { force: on(last.force, before.force), moment: on(last.moment, before.moment) }
+    }
+}
+
+impl<'p> BondedBushing<'p> {
+    /// At rest around its bodies where they are.
+    ///
+    /// # Errors
+    /// Rubber that has no equilibrium there.
+    pub(crate) fn new(
+        part: BondedPart<'p>,
+        simulation: &Simulation,
+    ) -> Result<BondedBushing<'p>, RubberError> {
+        let elements = part.elements.clone();
+        let mut bushing = BondedBushing::unmoved(part, simulation)?;
+        let now = || bushing.sleeves.iter();
+        let at = || now().flat_map(|now| now.sleeve.displacements(&now.from));
+        if at().any(|(_, u)| u != [0.0; 3]) {
+            bushing.rubber = match elements {
+                BondedElements::Implicit { model, .. } => {
+                    let mut solid = RubberSolid::new(model, StepOptions::default())?;
+                    solid.rest_with(at())?;
+                    BondedRubber::Implicit(Box::new(solid))
+                }
+                BondedElements::Explicit { body, fraction } => {
+                    let model = body.implicit()?;
+                    let mut solid = RubberSolid::new(&model, StepOptions::default())?;
+                    solid.rest_with(at())?;
+                    let displacement = solid.displacement().to_vec();
+                    let solid = ExplicitSolid::of_carried_rubber(body, fraction, displacement)?;
+                    BondedRubber::Explicit(Box::new(solid))
+                }
+            };
+        }
+        bushing.first_loads();
+        Ok(bushing)
+    }
+
+    /// Undeformed, wherever its bodies are.
+    pub(crate) fn unmoved(
+        part: BondedPart<'p>,
+        simulation: &Simulation,
+    ) -> Result<BondedBushing<'p>, RubberError> {
+        let second = usize::from(part.sleeves[1].body == part.spring.ends[1].body);
+        let sleeves = part.sleeves.map(|sleeve| SleeveNow::new(sleeve, simulation));
+        let (rubber, most) = match part.elements {
+            BondedElements::Implicit { model, step } => {
+                let solid = RubberSolid::new(model, StepOptions::default())?;
+                (BondedRubber::Implicit(Box::new(solid)), step)
+            }
+            BondedElements::Explicit { body, fraction } => {
+                let still = vec![[0.0; 3]; body.nodes.len()];
+                let solid = ExplicitSolid::of_carried_rubber(body, fraction, still)?;
+                let step = solid.step_size;
+                (BondedRubber::Explicit(Box::new(solid)), Some(step))
+            }
+        };
+        Ok(BondedBushing {
+            stiffness: sudden_stiffness(&part.spring),
+            window_phase: part.window_phase,
+            name: part.name,
+            steps: 1,
+            step: 0.0,
+            sleeves,
+            second,
+            rubber,
+            most,
+        })
+    }
+
+    /// Loads of the rubber at rest, as if they had lasted.
+    fn first_loads(&mut self) {
+        let forces = self.forces();
+        for now in &mut self.sleeves {
+            for _ in 0..2 {
+                now.take(0.0, 0.0, |node| forces[node as usize]);
+            }
+            now.handed = Wrench::default();
+        }
+    }
+
+    /// Of the elements on the nodes as last evaluated, N.
+    fn forces(&self) -> Vec<Vec3> {
+        match &self.rubber {
+            BondedRubber::Explicit(solid) => {
+                solid.forces().iter().map(|f| [f[0], f[1], f[2]]).collect()
+            }
+            BondedRubber::Implicit(solid) => solid.state().forces.clone(),
+        }
+    }
+
+    /// In windows of so many s, before the first one.
+    pub(crate) fn step_in(&mut self, window: f64) {
+        let of = |most: f64| ((window / most * (1.0 - 1e-12)).ceil() as usize).max(1);
+        self.steps = self.most.map_or(1, of);
+        self.step = window / self.steps as f64;
+        if let BondedRubber::Explicit(solid) = &mut self.rubber {
+            solid.step_size = self.step;
+            solid.time = 0.5 * self.step;
+        }
+    }
+
+    pub(crate) fn begin_window(&mut self, simulation: &Simulation) {
+        let window = self.steps as f64 * self.step;
+        for now in &mut self.sleeves {
+            now.begin_window(window, simulation.body(now.sleeve.body));
+        }
+    }
+
+    /// Through a window whose beginning its sleeves have been told, in which their bodies go on as in the one before. Explicit steps end
+    /// half a step ahead of the bodies, implicit ones half a step behind.
+    pub(crate) fn through_window(&mut self) -> Result<(), RubberError> {
+        for k in 0..self.steps {
+            let after = (k as f64 + 0.5) * self.step;
+            self.step_to(after)?;
+        }
+        Ok(())
+    }
+
+    fn step_to(&mut self, after: f64) -> Result<(), RubberError> {
+        let (step, sleeves) = (self.step, &mut self.sleeves);
+        match &mut self.rubber {
+            BondedRubber::Explicit(solid) => {
+                for now in sleeves.iter_mut() {
+                    let [here, next] = [after, after + step].map(|t| now.ahead(t));
+                    let ways = now.sleeve.displacements(&here).zip(now.sleeve.displacements(&next));
+                    solid.carry(
+                        ways.map(|((node, u), (_, next))| {
+                            (node, u, scale(sub(next, u), 1.0 / step))
+                        }),
+                    );
+                    now.there = next;
+                }
+                solid.step(|_, _, forces: &mut [Node]| {
+                    for now in sleeves.iter_mut() {
+                        now.take(after, step, |node| {
+                            let force = forces[node as usize];
+                            [force[0], force[1], force[2]]
+                        });
+                    }
+                })?;
+            }
+            BondedRubber::Implicit(solid) => {
+                let ends = sleeves.each_ref().map(|now| now.ahead(after));
+                let nodes = sleeves.iter().zip(&ends);
+                solid
+                    .driven_step(step, nodes.flat_map(|(now, at)| now.sleeve.displacements(at)))?;
+                for (now, at) in sleeves.iter_mut().zip(ends) {
+                    now.there = at;
+                    now.take(after, step, |node| solid.state().forces[node as usize]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// About how many evaluations of a steel element a window is worth.
+    pub fn effort(&self) -> u64 {
+        let (elements, worth) = match &self.rubber {
+            BondedRubber::Explicit(solid) => (solid.model.problem.elements.len(), 4),
+            // Iterations of ten-node elements, and a solution.
+            BondedRubber::Implicit(solid) => (solid.model().problem.elements.len(), 1000),
+        };
+        (elements * worth * self.steps) as u64
+    }
+
+    /// Steps of the rubber so far.
+    pub fn steps_done(&self) -> u64 {
+        match &self.rubber {
+            BondedRubber::Explicit(solid) => solid.steps,
+            BondedRubber::Implicit(solid) => solid.counts.accepted,
+        }
+    }
+
+    /// How often each stage ran.
+    pub fn ran(&self) -> Counts {
+        match &self.rubber {
+            BondedRubber::Explicit(solid) => solid.ran,
+            BondedRubber::Implicit(solid) => *solid.ran(),
+        }
+    }
+
+    pub(crate) fn forget_ran(&mut self) {
+        match &mut self.rubber {
+            BondedRubber::Explicit(solid) => solid.ran = Counts::default(),
+            BondedRubber::Implicit(solid) => solid.forget_ran(),
+        }
+    }
+
+    /// Of all nodes, m; half a step off the bodies' time.
+    pub fn displacement(&self) -> Vec<Vec3> {
+        match &self.rubber {
+            BondedRubber::Explicit(solid) => {
+                solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect()
+            }
+            BondedRubber::Implicit(solid) => solid.displacement().to_vec(),
+        }
+    }
+
+    pub(crate) fn snapshot(&mut self, simulation: &Simulation) -> BondedSnapshot {
+        let mut found = match &mut self.rubber {
+            BondedRubber::Explicit(solid) => {
+                let energy = solid.ledger().energy;
+                let of = solid.rubber().map(|rubber| rubber.maxwell_ledger(&solid.displacement));
+                let [springs, dissipated, beyond] = of.unwrap_or_default();
+                let (network, kinetic) = (energy.strain, energy.kinetic);
+                let held = BondedSnapshot { network, springs, kinetic, ..Default::default() };
+                BondedSnapshot { dissipated, beyond, ..held }
+            }
+            BondedRubber::Implicit(solid) => {
+                // It is a state that was found; one that is none makes the ledger end the run.
+                let ledger = RubberLedger::of(solid.model(), solid.state());
+                let unknown = RubberLedger { network: f64::NAN, ..RubberLedger::default() };
+                let found = ledger.unwrap_or(unknown);
+                let RubberLedger { network, springs, dissipated, beyond, .. } = found;
+                let kinetic = solid.kinetic_energy();
+                let held = BondedSnapshot { network, springs, kinetic, ..Default::default() };
+                BondedSnapshot { dissipated, beyond, ..held }
+            }
+        };
+        for (now, load) in self.sleeves.iter().zip(&mut found.loads) {
+            *load = now.load_now();
+            let body = simulation.body(now.sleeve.body);
+            found.work += now.work;
+            found.to_come += work_on_way(load, &body, &now.there);
+        }
+        found
+    }
+}
+
+/// Largest stiffness against a shift (N/m) and a turn (N·m/rad) before anything has relaxed.
+fn sudden_stiffness(spring: &Connection) -> [f64; 2] {
+    let law = match &spring.law {
+        Law::SpringDashpot(law) => law,
+        Law::Torsion(law) => return [0.0, law.stiffness],
+    };
+    let of = |i: usize| {
+        law.stiffness[i] + law.maxwell.iter().map(|element| element.stiffness[i]).sum::<f64>()
+    };
+    [0..3, 3..6].map(|axes| axes.map(of).fold(0.0, f64::max))
+}
+
+/// Gives the bodies of sleeves the mass of the nodes that they carry (kg, one for each node).
+pub fn add_mass(assembly: &mut Assembly, sleeve: &Sleeve, mass: &[f64]) {
+    let body = &mut assembly.bodies[sleeve.body];
+    let Some(race) = body.driven_mut() else { return };
+    for (node, [x, y, z]) in sleeve.nodes.iter().zip(&sleeve.arms) {
+        let mass = mass[*node as usize];
+        let around = y * y + z * z;
+        race.inertia.mass += mass;
+        race.inertia.axial += mass * around;
+        race.inertia.transverse += mass * (x * x + 0.5 * around);
+    }
+}

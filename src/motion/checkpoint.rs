@@ -1,0 +1,120 @@
+//! Everything a simulation needs to go on with the same bits.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::state::{Layout, Places};
+use crate::members::contacts::Work;
+use crate::motion::energy_ledger::Balance;
+use crate::motion::error_control::Memory;
+use crate::motion::extremes::Extremes;
+use crate::motion::simulation::{RunOptions, Simulation, SimulationError, Stepping};
+use crate::motion::stability::StepLimit;
+use crate::motion::step_watch::StepWatch;
+
+/// A simulation at the end of a step, as plain numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Checkpoint {
+    /// s.
+    pub time: f64,
+    pub steps: u64,
+    /// s.
+    pub step_size: f64,
+    pub limit: Option<StepLimit>,
+    pub step_watch: StepWatch,
+    /// Of each bearing.
+    pub extremes: Vec<Extremes>,
+    /// The whole state vector; see [`crate::assembly::state`].
+    pub state: Vec<f64>,
+    /// Contact damping of each pair and whether it carried load: the history of contacts.
+    pub damping: Vec<f64>,
+    pub was_loaded: Vec<bool>,
+    /// The ledger counts from its start.
+    pub balance: Balance,
+    pub work: Work,
+    /// With error control only.
+    pub control: Option<Memory>,
+}
+
+impl Checkpoint {
+    /// Whether its lists have the lengths that the problem asks for.
+    pub fn fits(&self, assembly: &Assembly) -> bool {
+        let layouts = Layout::of(assembly);
+        let pairs: usize = layouts.iter().map(|layout| 2 * layout.padded).sum();
+        self.state.len() == Places::of(assembly).state_len()
+            && self.damping.len() == pairs
+            && self.was_loaded.len() == pairs
+            && self.extremes.len() == layouts.len()
+    }
+}
+
+impl Simulation {
+    pub fn checkpoint(&self) -> Checkpoint {
+        let mut checkpoint = Checkpoint::default();
+        self.checkpoint_into(&mut checkpoint);
+        checkpoint
+    }
+
+    /// As [`Simulation::checkpoint`]; allocates nothing the second time.
+    pub fn checkpoint_into(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.time = self.time;
+        checkpoint.steps = self.steps;
+        checkpoint.step_size = self.step_size;
+        checkpoint.limit = self.limit;
+        checkpoint.step_watch = self.step_watch;
+        checkpoint.extremes.clone_from(&self.extremes);
+        checkpoint.state.clone_from(&self.state);
+        checkpoint.damping.clear();
+        for set in &self.system.sets {
+            checkpoint.damping.extend_from_slice(&set.damping);
+        }
+        checkpoint.was_loaded.clone_from(&self.was_loaded);
+        checkpoint.balance = self.balance;
+        checkpoint.work = self.system.work;
+        checkpoint.control = self.control.as_ref().map(|control| control.memory);
+    }
+
+    /// Goes on where a checkpoint was taken: the same problem and options give the same bits as
+    /// if nothing had come between.
+    ///
+    /// # Errors
+    /// A step size that is no step.
+    ///
+    /// # Panics
+    /// If the checkpoint does not [fit](Checkpoint::fits) the problem.
+    pub fn from_checkpoint(
+        assembly: impl Into<Assembly>,
+        options: RunOptions,
+        checkpoint: &Checkpoint,
+    ) -> Result<Simulation, SimulationError> {
+        let assembly = assembly.into();
+        assert!(checkpoint.fits(&assembly), "a checkpoint of another problem");
+        let stepping = match options.stepping {
+            Stepping::Accuracy(_) => options.stepping,
+            Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => {
+                Stepping::Fixed(checkpoint.step_size)
+            }
+        };
+        let known = RunOptions { stepping, ..options };
+        let state = checkpoint.state.clone();
+        let mut simulation = Simulation::from_state(assembly, known, state, checkpoint.time)?;
+        simulation.options = options;
+        simulation.step_size = checkpoint.step_size;
+        if let (Some(control), Some(memory)) = (&mut simulation.control, checkpoint.control) {
+            control.memory = memory;
+        }
+        simulation.steps = checkpoint.steps;
+        simulation.limit = checkpoint.limit;
+        simulation.step_watch = checkpoint.step_watch;
+        simulation.extremes.clone_from(&checkpoint.extremes);
+        let mut damping = checkpoint.damping.as_slice();
+        for set in &mut simulation.system.sets {
+            let (own, others) = damping.split_at(set.damping.len());
+            set.damping.copy_from_slice(own);
+            damping = others;
+        }
+        simulation.take_first_rates();
+        simulation.system.work = checkpoint.work;
+        simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);
+        simulation.balance = checkpoint.balance;
+        Ok(simulation)
+    }
+}

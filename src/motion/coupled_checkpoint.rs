@@ -1,0 +1,171 @@
+//! Everything that bodies and solids in explicit steps, with seats between them, need to go on with the
+//! same bits.
+
+use crate::assembly::lists::Assembly;
+use crate::kinematics::vec3::Vec3;
+use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
+use crate::motion::bore_friction::NodeSpring;
+use crate::motion::checkpoint::Checkpoint;
+use crate::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use crate::motion::explicit_shaft::SteppedShaft;
+use crate::motion::explicit_solid::{SteppedSolid, seated};
+use crate::motion::race_in_bore::{Growth, Seat};
+use crate::motion::simulation::Simulation;
+use crate::solids::checkpoint::SolidCheckpoint;
+use crate::solids::explicit::{ExplicitMethod, ExplicitSolid};
+use crate::solids::step_limit::SolidStepLimit;
+
+/// All at the end of a window, as plain numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExchangeCheckpoint {
+    pub simulation: Checkpoint,
+    pub solids: Vec<SteppedCheckpoint>,
+    /// Of each bushing [`BondedBushing::numbers`].
+    pub bushings: Vec<Vec<f64>>,
+    pub exchanges: u64,
+    /// What the ledger of all held at the start, J.
+    pub first: f64,
+}
+
+/// A solid and its seats.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SteppedCheckpoint {
+    pub solid: SolidCheckpoint,
+    pub seats: Vec<SeatCheckpoint>,
+    /// Of a shaft what it keeps beside its elements; of other solids none.
+    pub shaft: Vec<f64>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SeatCheckpoint {
+    /// On the race since the start, N·s.
+    pub impulse: Vec3,
+    /// On its body since the start, J.
+    pub work: f64,
+    pub growth: Growth,
+    pub tested: u64,
+    pub sorts: u64,
+    pub friction: Option<FrictionCheckpoint>,
+}
+
+/// What the friction of a seat remembers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrictionCheckpoint {
+    /// Of nodes that touched in the last step, ascending.
+    pub springs: Vec<NodeSpring>,
+    /// Since the start, J; see [`FrictionSum`](crate::motion::bore_friction::FrictionSum).
+    pub heat: f64,
+    pub load_work: f64,
+}
+
+/// Sizes that were chosen at the start and stay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Windows {
+    /// s.
+    pub window: f64,
+    /// Of each solid: steps in a window, and what limits them.
+    pub solids: Vec<(usize, SolidStepLimit)>,
+}
+
+impl<'p> Exchange<'p> {
+    /// Where all are now. Nodes are sorted by reach first, so that going on from here and going on
+    /// from the checkpoint tests the same ones.
+    pub fn checkpoint_into(&mut self, checkpoint: &mut ExchangeCheckpoint) {
+        self.simulation.checkpoint_into(&mut checkpoint.simulation);
+        checkpoint.solids.resize_with(self.solids.len(), SteppedCheckpoint::default);
+        for (part, kept) in self.solids.iter_mut().zip(&mut checkpoint.solids) {
+            part.sort(&self.simulation);
+            part.solid.checkpoint_into(&mut kept.solid);
+            kept.seats.clear();
+            kept.seats.extend(part.seats.iter().map(|seat| SeatCheckpoint {
+                impulse: seat.impulse,
+                work: seat.work,
+                growth: seat.growth,
+                tested: seat.tested,
+                sorts: seat.sorts,
+                friction: seat.friction.as_ref().map(|of| FrictionCheckpoint {
+                    springs: of.springs.clone(),
+                    heat: of.sum.heat,
+                    load_work: of.sum.load_work,
+                }),
+            }));
+            kept.shaft = part.shaft.as_ref().map_or(Vec::new(), |shaft| shaft.numbers());
+        }
+        checkpoint.bushings = self.bushings.iter().map(BondedBushing::numbers).collect();
+        checkpoint.exchanges = self.exchanges;
+        checkpoint.first = self.first;
+    }
+
+    pub fn windows(&self) -> Windows {
+        let of = |part: &SteppedSolid| (part.steps, part.solid.limit);
+        Windows { window: self.window, solids: self.solids.iter().map(of).collect() }
+    }
+
+    /// Goes on where a checkpoint of the same assembly, solids, seats, bushings and options was taken.
+    ///
+    /// # Errors
+    /// A step size that is no step.
+    ///
+    /// # Panics
+    /// If the checkpoint has other numbers of balls, solids, nodes, seats or bushings.
+    pub fn from_checkpoint(
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
+        bushings: Vec<BondedPart<'p>>,
+        options: &ExchangeOptions,
+        windows: &Windows,
+        checkpoint: &ExchangeCheckpoint,
+    ) -> Result<Exchange<'p>, ExchangeError> {
+        assert_eq!(solids.len(), windows.solids.len());
+        let assembly = assembly.into();
+        let method = ExplicitMethod::CentralDifferences;
+        let mut solids: Vec<SteppedSolid> = solids
+            .into_iter()
+            .zip(&windows.solids)
+            .map(|(SolidPart { name, model, shaft, .. }, &(steps, limit))| {
+                let step = windows.window / steps as f64;
+                let solid = ExplicitSolid::at_rest(model, method, step, limit);
+                let shaft =
+                    shaft.map(|of| Box::new(SteppedShaft::new(of, &solid.model, &assembly)));
+                SteppedSolid { name, solid, steps, seats: Vec::new(), shaft }
+            })
+            .collect();
+        seated(&assembly, &mut solids, seats);
+        let simulation =
+            Simulation::from_checkpoint(assembly, options.bearing, &checkpoint.simulation)?;
+        assert_eq!(bushings.len(), checkpoint.bushings.len());
+        let mut on_rubber = Vec::with_capacity(bushings.len());
+        for (part, kept) in bushings.into_iter().zip(&checkpoint.bushings) {
+            let name = part.name.clone();
+            let made = BondedBushing::unmoved(part, &simulation);
+            let mut bushing = made.map_err(|source| ExchangeError::Bushing { name, source })?;
+            bushing.restore(windows.window, kept).expect("as many numbers as the bushing left");
+            on_rubber.push(bushing);
+        }
+        let mut exchange = Exchange::of(simulation, solids, on_rubber, windows.window);
+        exchange.exchanges = checkpoint.exchanges;
+        exchange.first = checkpoint.first;
+        for (part, kept) in exchange.solids.iter_mut().zip(&checkpoint.solids) {
+            part.solid.restore(&kept.solid);
+            part.sort(&exchange.simulation);
+            if let Some(shaft) = &mut part.shaft {
+                shaft.restore(&kept.shaft);
+            }
+            assert_eq!(part.seats.len(), kept.seats.len());
+            for (seat, kept) in part.seats.iter_mut().zip(&kept.seats) {
+                seat.impulse = kept.impulse;
+                seat.work = kept.work;
+                seat.growth = kept.growth;
+                seat.tested = kept.tested;
+                seat.sorts = kept.sorts;
+                assert_eq!(seat.friction.is_some(), kept.friction.is_some());
+                if let (Some(of), Some(kept)) = (&mut seat.friction, &kept.friction) {
+                    of.springs.clone_from(&kept.springs);
+                    (of.sum.heat, of.sum.load_work) = (kept.heat, kept.load_work);
+                }
+            }
+        }
+        Ok(exchange)
+    }
+}

@@ -1,0 +1,167 @@
+//! How an exchange starts: where bodies, solids and bushings are in equilibrium, and in what windows they go on.
+
+use crate::assembly::lists::{Assembly, Body};
+use crate::assembly::plan::Stage;
+use crate::assembly::state::{BODY, BodyState, Places};
+use crate::equilibrium::statics::StaticsError;
+use crate::members::flexible_shaft::ElasticShaft;
+use crate::members::rigid_body;
+use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
+use crate::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use crate::motion::coupling_step::{check, divided, longest_window};
+use crate::motion::explicit_shaft::SteppedShaft;
+use crate::motion::explicit_solid::{SteppedSolid, seated};
+use crate::motion::race_in_bore::Seat;
+use crate::motion::simulation::Simulation;
+use crate::motion::start;
+use crate::solids::contact::closed_limit;
+use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, padded};
+use crate::solids::step_limit::step_limit;
+
+impl<'p> Exchange<'p> {
+    /// Starts with the bodies that sit in solids where they rest, the others in equilibrium with them there
+    /// and the bearings rolling, the solids still and displaced as they are given.
+    ///
+    /// # Errors
+    /// No equilibrium, a fixed race or one on a foundation, options out of range.
+    ///
+    /// # Panics
+    /// If a seat names a body or a solid that is not there.
+    pub fn new(
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
+        options: &ExchangeOptions,
+    ) -> Result<Exchange<'p>, ExchangeError> {
+        Exchange::with_bushings(assembly, solids, seats, Vec::new(), options)
+    }
+
+    /// The same with bushings between bodies: where these and the rest are in equilibrium on springs as stiff as the
+    /// relaxed rubber in its elements.
+    ///
+    /// # Errors
+    /// As [`Exchange::new`]; rubber without an equilibrium.
+    ///
+    /// # Panics
+    /// If a seat or a bushing names a body or a solid that is not there.
+    pub fn with_bushings(
+        assembly: impl Into<Assembly>,
+        solids: Vec<SolidPart>,
+        seats: Vec<Seat>,
+        bushings: Vec<BondedPart<'p>>,
+        options: &ExchangeOptions,
+    ) -> Result<Exchange<'p>, ExchangeError> {
+        let assembly = assembly.into();
+        check(&assembly, &seats, options)?;
+        let method = ExplicitMethod::CentralDifferences;
+        let mut solids: Vec<SteppedSolid> = solids
+            .into_iter()
+            .map(|SolidPart { name, model, displacement, shaft }| {
+                let displacement = padded(displacement);
+                let limit = step_limit(&model, &displacement, method);
+                let mut solid = ExplicitSolid::at_rest(model, method, limit.step, limit);
+                solid.displacement = displacement;
+                let shaft =
+                    shaft.map(|of| Box::new(SteppedShaft::new(of, &solid.model, &assembly)));
+                SteppedSolid { name, solid, steps: 1, seats: Vec::new(), shaft }
+            })
+            .collect();
+        let seats = seated(&assembly, &mut solids, seats);
+        let mut bushings = bushings;
+        let joined = solids.iter().filter_map(|part| part.shaft.as_ref()).flat_map(|s| &s.joints);
+        let held: Vec<usize> = seats
+            .iter()
+            .map(|seat| seat.mount.body)
+            .chain(joined.map(|now| now.joint.body))
+            .collect();
+        let state = held_start(&assembly, &held, &bushings)?;
+        let mut simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        if bushings.iter().any(|part| part.is_moved(&simulation)) {
+            for part in &mut bushings {
+                let measured = part.measure();
+                let named = |source| ExchangeError::Bushing { name: part.name.clone(), source };
+                measured.map_err(named)?;
+            }
+            let assembly = simulation.system.assembly;
+            let state = held_start(&assembly, &held, &bushings)?;
+            simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
+        }
+        let mut on_rubber = Vec::with_capacity(bushings.len());
+        for part in bushings {
+            let name = part.name.clone();
+            let bushing = BondedBushing::new(part, &simulation);
+            on_rubber.push(bushing.map_err(|source| ExchangeError::Bushing { name, source })?);
+        }
+        let assembly = &simulation.system.assembly;
+        let longest = longest_window(assembly, &seats, &solids, &on_rubber, options.seat_phase)?;
+        let steps: Vec<f64> = solids
+            .iter()
+            .map(|SteppedSolid { solid, seats, shaft, .. }| {
+                // With every node of every seat closed.
+                let closed = seats.iter().fold(solid.limit, |limit, seat| {
+                    closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
+                });
+                let closed = shaft.as_ref().map_or(closed, |shaft| closed.with(shaft.added(solid)));
+                let longest =
+                    shaft.as_ref().map_or(longest, |shaft| longest.min(shaft.braked(solid)));
+                (options.solid_fraction * closed.step).min(longest)
+            })
+            .collect();
+        let elements: Vec<usize> =
+            solids.iter().map(|part| part.solid.model.problem.elements.len()).collect();
+        // The bodies' own steps divide the windows or are divided by them.
+        let (window, steps) = divided(&elements, &steps, longest);
+        for (part, steps) in solids.iter_mut().zip(steps) {
+            part.steps = steps;
+        }
+        let mut exchange = Exchange::of(simulation, solids, on_rubber, window);
+        exchange.simulation.system.ran.whole.add(Stage::StartEquilibrium, 1);
+        exchange.begin()?;
+        Ok(exchange)
+    }
+}
+
+/// Whether one seat is all that pushes or brakes the bodies of an assembly from outside.
+pub(crate) fn is_alone(
+    assembly: &Assembly,
+    solids: &[SteppedSolid],
+    bushings: &[BondedBushing],
+) -> bool {
+    let mut brakes =
+        assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
+    let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
+    seats == 1
+        && solids.iter().all(|part| part.shaft.is_none())
+        && bushings.is_empty()
+        && assembly.connections.is_empty()
+        && brakes.all(|damping| damping == 0.0)
+}
+
+/// State of an assembly in equilibrium whose bodies in and on solids are held where they rest, those on bushings on the
+/// springs that these are like.
+fn held_start(
+    assembly: &Assembly,
+    in_solids: &[usize],
+    bushings: &[BondedPart],
+) -> Result<Vec<f64>, StaticsError> {
+    let mut held = assembly.clone();
+    held.connections.extend(bushings.iter().map(|part| part.spring.clone()));
+    for body in in_solids {
+        held.bodies[*body].hold();
+    }
+    let mut state = start::at_equilibrium(&held)?;
+    // What the springs' elements have in the state stands after that of the other connections, before shafts that bend.
+    let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
+    let bent: usize = assembly.shafts.iter().map(ElasticShaft::entries).sum();
+    state.drain(own - bent..with_springs - bent);
+    for &body in in_solids {
+        if held.bodies[body].driven().is_some() {
+            // It turns, and balls roll with it.
+            continue;
+        }
+        let still: BodyState = rigid_body::fixed(&assembly.bodies[body].rest).state;
+        let at = Places::of(&held).body(body);
+        state[at..at + BODY].copy_from_slice(&still.to_array());
+    }
+    Ok(state)
+}

@@ -1,0 +1,119 @@
+//! How long the windows of an exchange are, and what cannot be exchanged.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::loads::Rotation;
+use crate::motion::bonded_bushing::BondedBushing;
+use crate::motion::coupling::{ExchangeError, ExchangeOptions};
+use crate::motion::explicit_shaft::BRAKED;
+use crate::motion::explicit_solid::SteppedSolid;
+use crate::motion::race_in_bore::Seat;
+
+/// How far a body may swing on a section of a shaft in a window, rad: its own motion there is fast and of no interest.
+const JOINT_PHASE: f64 = 0.5;
+
+/// The longest window for which no body goes further on its seats than `phase`, and on its bushings and shafts than their own, s:
+/// of all together, stiffnesses over squares of phases count.
+pub(crate) fn longest_window(
+    assembly: &Assembly,
+    seats: &[Seat],
+    solids: &[SteppedSolid],
+    bushings: &[BondedBushing],
+    phase: f64,
+) -> Result<f64, ExchangeError> {
+    let joints = || solids.iter().filter_map(|part| part.shaft.as_ref()).flat_map(|s| &s.joints);
+    if seats.is_empty() && bushings.is_empty() && joints().next().is_none() {
+        return Err(ExchangeError::NoSeat { seat: String::new() });
+    }
+    let mut most = 0.0f64;
+    for (index, body) in assembly.bodies.iter().enumerate() {
+        let mut sums = [0.0; 2];
+        let mut about_axis = 0.0;
+        let mut braked = [0.0; 2];
+        let [x, y, z, ..] = body.rest;
+        for seat in seats.iter().filter(|seat| seat.mount.body == index) {
+            let [shift, tilt, turn] = seat.stiffness([x, y, z]);
+            if shift.is_nan() || shift <= 0.0 {
+                return Err(ExchangeError::NoSeat { seat: seat.suffix() });
+            }
+            about_axis += turn;
+            sums = [sums[0] + shift, sums[1] + tilt];
+        }
+        let sleeves =
+            |bushing: &&BondedBushing| bushing.sleeves.iter().any(|now| now.sleeve.body == index);
+        for bushing in bushings.iter().filter(sleeves) {
+            let ([shift, tilt], weight) = (bushing.stiffness, phase / bushing.window_phase);
+            let weight = weight * weight;
+            sums = [sums[0] + weight * shift, sums[1] + weight * tilt];
+        }
+        for now in joints().filter(|now| now.joint.body == index) {
+            let ([shift, tilt], weight) = (now.joint.stiffness(), phase / JOINT_PHASE);
+            let weight = weight * weight;
+            sums = [sums[0] + weight * shift, sums[1] + weight * tilt];
+            braked = [braked[0] + now.joint.damping()[0], braked[1] + now.joint.damping()[1]];
+        }
+        let Some(inertia) = body.inertia() else { continue };
+        // As if a spring asked for the same window.
+        for (rate, of) in braked.into_iter().zip([inertia.mass, inertia.transverse]) {
+            let rate = phase * rate / (BRAKED * of);
+            most = most.max(rate * rate);
+        }
+        most = most.max((sums[0] / inertia.mass).max(sums[1] / inertia.transverse));
+        // Nothing but friction turns a race in its bore back; one whose speed is given does not mind.
+        if body.driven().is_none_or(|race| matches!(race.rotation, Rotation::Torque(_))) {
+            most = most.max(about_axis / inertia.axial);
+        }
+    }
+    let window = phase / most.sqrt();
+    // No mass on a spring, or no number.
+    if window > 0.0 { Ok(window) } else { Err(ExchangeError::NoWindow { window }) }
+}
+
+/// How many steps of at most `step` s (one a solid) fill a window, whole steps of one of them and no
+/// longer than `longest` (s); and its length, s. Of the windows that offer themselves the one that
+/// evaluates the fewest elements a second, the longer one of two.
+pub(crate) fn divided(elements: &[usize], step: &[f64], longest: f64) -> (f64, Vec<usize>) {
+    let mut best: Option<(f64, f64, Vec<usize>)> = None;
+    for whole in step {
+        let window = ((longest / whole) as usize).max(1) as f64 * whole;
+        let steps: Vec<usize> = step
+            .iter()
+            .map(|step| ((window / step * (1.0 - 1e-12)).ceil() as usize).max(1))
+            .collect();
+        let each = elements.iter().zip(&steps).map(|(elements, steps)| (elements * steps) as f64);
+        let cost = each.sum::<f64>() / window;
+        let better = |(least, length, _): &(f64, f64, Vec<usize>)| {
+            cost < *least || (cost == *least && window > *length)
+        };
+        if best.as_ref().is_none_or(better) {
+            best = Some((cost, window, steps));
+        }
+    }
+    best.map_or((longest, Vec::new()), |(_, window, steps)| (window, steps))
+}
+
+/// # Errors
+/// Options out of range, a race that is fixed or on a foundation.
+pub(crate) fn check(
+    assembly: &Assembly,
+    seats: &[Seat],
+    options: &ExchangeOptions,
+) -> Result<(), ExchangeError> {
+    let ranges = [
+        ("the fraction of the solid's step limit", options.solid_fraction, 1.0),
+        ("the phase of the seat in a window", options.seat_phase, 1.9),
+    ];
+    for (name, value, most) in ranges {
+        if !(value > 0.0 && value <= most) {
+            return Err(ExchangeError::Option { name, value, most });
+        }
+    }
+    for seat in seats {
+        let body = &assembly.bodies[seat.mount.body];
+        let race = body.name.clone();
+        let Some(driven) = body.driven() else { return Err(ExchangeError::FixedRace { race }) };
+        if driven.foundation_stiffness.iter().chain(&driven.foundation_damping).any(|k| *k != 0.0) {
+            return Err(ExchangeError::Foundation { race });
+        }
+    }
+    Ok(())
+}

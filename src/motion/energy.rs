@@ -1,0 +1,124 @@
+//! What is stored in a state: kinetic energy, contacts, gravity, springs, reduced solids and their seats.
+
+use crate::assembly::state::{POSITION, SPIN, VELOCITY};
+use crate::ch2_housing::bearing::cage::cage_energy;
+use crate::ch2_housing::bearing::contact::strain_energy;
+use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::kinematics::vec3::{Vec3, dot};
+use crate::members::unbalance::{bent_of, energies};
+use crate::motion::system::System;
+
+/// Energy at one instant, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    pub kinetic: f64,
+    /// Stored in ball–race contacts.
+    pub contact: f64,
+    /// Stored in cage contacts.
+    pub cage_contact: f64,
+    /// −m g·r of all bodies and reduced solids.
+    pub gravity: f64,
+    /// Stored in springs to the ground and between bodies.
+    pub foundation: f64,
+    /// Stored in contacts between balls.
+    pub ball_contact: f64,
+    /// Motion and strain of reduced solids.
+    pub solid_kinetic: f64,
+    pub solid_strain: f64,
+    /// Of bending of shafts.
+    pub bending_kinetic: f64,
+    pub bending_strain: f64,
+    /// Stored in contacts of seats.
+    pub seat: f64,
+}
+
+impl Energy {
+    pub fn total(&self) -> f64 {
+        self.kinetic
+            + self.contact
+            + self.cage_contact
+            + self.gravity
+            + self.foundation
+            + self.ball_contact
+            + (self.solid_kinetic + self.solid_strain + self.seat)
+            + (self.bending_kinetic + self.bending_strain)
+    }
+}
+
+impl System {
+    /// Energies of a state; call after [`System::evaluate`] at the same state.
+    pub fn energy(&self, state: &[f64]) -> Energy {
+        let assembly = &self.assembly;
+        let mut energy = Energy::default();
+        let mut add_body = |inertia: &Inertia, axis: Vec3, body: &[Vec3; 3]| {
+            let Inertia { mass, axial, transverse, .. } = *inertia;
+            let [position, velocity, spin] = *body;
+            let about_axis = dot(spin, axis);
+            energy.kinetic += 0.5 * mass * dot(velocity, velocity)
+                + 0.5 * transverse * dot(spin, spin)
+                + 0.5 * (axial - transverse) * about_axis * about_axis;
+            energy.gravity -= mass * dot(assembly.gravity, position);
+        };
+        for (set, bearing) in self.sets.iter().zip(&assembly.bearings) {
+            for i in 0..set.layout.balls {
+                let vector = |component| set.layout.ball_vector(state, component, i);
+                let body = [vector(POSITION), vector(VELOCITY), vector(SPIN)];
+                add_body(&bearing.ball, [1.0, 0.0, 0.0], &body);
+            }
+        }
+        for (body, now) in assembly.bodies.iter().zip(&self.bodies) {
+            let Some(inertia) = body.inertia() else { continue };
+            let parts = [now.state.position, now.state.velocity, now.state.spin];
+            add_body(inertia, now.motion.axis, &parts);
+        }
+        for (set, bearing) in self.sets.iter().zip(&assembly.bearings) {
+            if let Some(cage) = &bearing.cage {
+                for contact in set.pockets.iter().chain(&set.guides) {
+                    energy.cage_contact += cage_energy(&cage.contacts.force, contact.penetration);
+                }
+            }
+            for (race, law) in set.laws.races.iter().enumerate() {
+                for i in 0..set.layout.balls {
+                    let overlap = set.table.contact[race * set.layout.padded + i].overlap;
+                    energy.contact += strain_energy(law.stiffness, overlap);
+                }
+            }
+            if let Some(law) = &bearing.ball_contact {
+                for meeting in &set.meetings {
+                    energy.ball_contact += strain_energy(law.stiffness, meeting.overlap);
+                }
+            }
+        }
+        for (body, now) in assembly.bodies.iter().zip(&self.bodies) {
+            let Some(driven) = body.driven() else { continue };
+            for i in 0..5 {
+                let value = if i < 3 { now.state.position[i] } else { now.tilts()[i - 3] };
+                let stretch = value - body.rest[i];
+                energy.foundation += 0.5 * driven.foundation_stiffness[i] * stretch * stretch;
+            }
+        }
+        for index in 0..assembly.connections.len() {
+            energy.foundation += self.pull(state, index).energy;
+        }
+        for solid in 0..assembly.solids.len() {
+            let of = self.energy_of_solid(state, solid);
+            energy.solid_kinetic += of.kinetic;
+            energy.solid_strain += of.strain;
+            energy.gravity += of.gravity;
+        }
+        for index in self.steps.moving.iter().copied().filter(|&of| self.steps.bodies[of].swings) {
+            let bent = bent_of(assembly, &self.shafts, index, state).map(|(_, bent)| bent);
+            let of = (&assembly.bodies[index], &self.bodies[index]);
+            let [kinetic, weight] = energies(of, bent, assembly.gravity);
+            energy.kinetic += kinetic;
+            energy.gravity += weight;
+        }
+        for (index, shaft) in assembly.shafts.iter().enumerate() {
+            let of = shaft.energy(self.bent(state, index));
+            energy.bending_kinetic += of.kinetic;
+            energy.bending_strain += of.strain;
+        }
+        energy.seat = self.seats.iter().map(|seat| seat.contact.energy).sum();
+        energy
+    }
+}

@@ -1,0 +1,136 @@
+//! A solid in explicit steps of its own with the seats in its bores and what sits on its sections, between two exchanges with the
+//! bodies.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::counts::Counts;
+use crate::motion::explicit_shaft::{JointSnapshot, SteppedShaft};
+use crate::motion::race_in_bore::{Seat, SeatSnapshot, SeatState};
+use crate::motion::simulation::Simulation;
+use crate::solids::energy::SolidLedger;
+use crate::solids::explicit::ExplicitSolid;
+use crate::solids::model::SolidError;
+use crate::solids::tet4_blocks::Node;
+
+/// A solid in steps of its own, the seats in its bores, and what sits on it where it is a shaft.
+pub struct SteppedSolid {
+    pub name: Option<String>,
+    pub solid: ExplicitSolid,
+    /// In a window.
+    pub steps: usize,
+    pub seats: Vec<SeatState>,
+    pub shaft: Option<Box<SteppedShaft>>,
+}
+
+/// A solid with its seats at the present time.
+#[derive(Clone, Debug)]
+pub struct SolidSnapshot {
+    pub ledger: SolidLedger,
+    pub seats: Vec<SeatSnapshot>,
+    pub joints: Vec<JointSnapshot>,
+    /// Of unbalances on a shaft since the start, J.
+    pub unbalance_work: f64,
+}
+
+impl SteppedSolid {
+    /// Through a window whose beginning its seats have been told, in which their bodies are as if free.
+    pub(crate) fn through_window(&mut self) -> Result<(), SolidError> {
+        let step = self.solid.step_size;
+        for k in 0..self.steps {
+            // Displacements are half a step ahead of velocities, whose time is that of the bodies.
+            let after = (k as f64 + 0.5) * step;
+            let (seats, solid) = (&mut self.seats, &mut self.solid);
+            if let Some(shaft) = &mut self.shaft {
+                shaft.begin_step(solid, after);
+            }
+            let shaft = self.shaft.as_deref_mut();
+            solid.step(|t, displacement, forces| {
+                for seat in seats.iter_mut() {
+                    seat.push_both(t, [after, step], displacement, forces);
+                }
+                if let Some(shaft) = &shaft {
+                    shaft.push(forces);
+                }
+            })?;
+            if let Some(shaft) = shaft {
+                shaft.end_step(solid);
+            }
+        }
+        Ok(())
+    }
+
+    /// What messages and summaries call it.
+    pub fn kind(&self) -> &'static str {
+        if self.shaft.is_some() { "shaft" } else { "housing" }
+    }
+
+    /// How often each stage ran, but for seats.
+    pub(crate) fn ran(&self) -> Counts {
+        let mut ran = self.solid.ran;
+        if let Some(shaft) = &self.shaft {
+            ran.add(Stage::Joints, shaft.looks * u64::from(!shaft.joints.is_empty()));
+            ran.add(Stage::Unbalance, shaft.looks * u64::from(!shaft.unbalances.is_empty()));
+        }
+        ran
+    }
+
+    pub(crate) fn forget_ran(&mut self) {
+        self.solid.ran = Counts::default();
+        self.seats.iter_mut().for_each(SeatState::forget_ran);
+        self.shaft.iter_mut().for_each(|shaft| shaft.looks = 0);
+    }
+
+    /// In windows of so many s, before the first one.
+    pub(crate) fn step_in(&mut self, window: f64) {
+        self.solid.step_size = window / self.steps as f64;
+        self.solid.time = 0.5 * self.solid.step_size;
+        if let Some(shaft) = &self.shaft {
+            shaft.spin_up(&mut self.solid);
+        }
+    }
+
+    /// Energies of solid and seats, their bodies where `simulation` has them.
+    pub(crate) fn snapshot(&mut self, simulation: &Simulation) -> SolidSnapshot {
+        let SteppedSolid { solid, seats, shaft, .. } = self;
+        let ahead = 0.5 * solid.step_size;
+        let mut found = Vec::with_capacity(seats.len());
+        let mut on_sections: Vec<Node> = Vec::new();
+        let (mut joints, mut unbalance_work) = (Vec::new(), 0.0);
+        if let Some(shaft) = shaft {
+            on_sections.resize(solid.displacement.len(), [0.0; 4]);
+            let now = (solid.time, &solid.displacement[..], solid.rates());
+            (joints, unbalance_work) = shaft.snapshot(simulation, ahead, now, &mut on_sections);
+        }
+        let ledger = solid.ledger_with(|t, displacement, forces| {
+            for seat in seats.iter() {
+                let body = simulation.body(seat.seat.mount.body);
+                found.push(seat.snapshot(&body, [t, ahead], displacement, forces));
+            }
+            for (sum, more) in forces.iter_mut().zip(&on_sections) {
+                for (sum, more) in sum.iter_mut().zip(more) {
+                    *sum += more;
+                }
+            }
+        });
+        SolidSnapshot { ledger, seats: found, joints, unbalance_work }
+    }
+
+    pub(crate) fn sort(&mut self, simulation: &Simulation) {
+        for seat in &mut self.seats {
+            seat.sort(&simulation.body(seat.seat.mount.body), &self.solid);
+        }
+    }
+}
+
+/// Puts the seats into their solids, with the nodes under the races alone; returns them in that order.
+pub(crate) fn seated(
+    assembly: &Assembly,
+    solids: &mut [SteppedSolid],
+    seats: Vec<Seat>,
+) -> Vec<Seat> {
+    for seat in seats {
+        let body = &assembly.bodies[seat.mount.body];
+        solids[seat.solid].seats.push(SeatState::new(seat, body));
+    }
+    solids.iter().flat_map(|part| &part.seats).map(|state| state.seat.clone()).collect()
+}

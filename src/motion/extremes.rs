@@ -1,0 +1,134 @@
+//! The largest of what every accepted step has led to, whatever rows are written: of the contacts of an
+//! evaluation that the step makes anyway.
+
+use crate::kinematics::vec3::{dot, norm, sub};
+use crate::motion::system::System;
+
+/// A largest value, the ball it belongs to, counted from 0, and its time, s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extreme {
+    pub value: f64,
+    pub ball: usize,
+    pub time: f64,
+}
+
+impl Extreme {
+    /// The first of equal values stays, so that looking twice at one state changes nothing.
+    fn take(&mut self, value: f64, ball: usize, time: f64) {
+        if value > self.value {
+            *self = Extreme { value, ball, time };
+        }
+    }
+}
+
+/// Contacts that carry less than this part of the largest load so far tell nothing of where loads go.
+const WORTH_A_LOOK: f64 = 0.01;
+
+/// Of the contacts with one race.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RaceExtremes {
+    /// Normal load, N.
+    pub load: Extreme,
+    /// Angle in the groove from its bottom to the farther end of the contact ellipse, rad.
+    pub edge: Extreme,
+    /// Contact angle there, rad, without sign.
+    pub edge_angle: f64,
+    /// Sine of the contact angle on the other side of the groove than a positive one is on.
+    pub reversed: Extreme,
+}
+
+/// Since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extremes {
+    /// Inner, outer.
+    pub races: [RaceExtremes; 2],
+    /// Centre of the inner race from where the bearing sits, m.
+    pub farthest: Extreme,
+    /// Centre of the inner race from that of the outer one, m.
+    pub apart: Extreme,
+    /// Load between a ball and the next one, N.
+    pub between_balls: Extreme,
+}
+
+impl Extremes {
+    /// Takes note of the races and contacts of a bearing as they were evaluated last.
+    pub fn record(&mut self, system: &System, index: usize, time: f64) {
+        let (set, bearing) = (&system.sets[index], &system.assembly.bearings[index]);
+        let layout = &set.layout;
+        let [inner, outer] = [0, 1].map(|side: usize| &set.races[side].motion);
+        let [x, y, z] = inner.position;
+        self.farthest.take(norm([x - system.assembly.place_of(bearing), y, z]), 0, time);
+        self.apart.take(norm(sub(inner.position, outer.position)), 0, time);
+        for (ball, meeting) in set.meetings.iter().enumerate() {
+            self.between_balls.take(meeting.normal_load, ball, time);
+        }
+        let axes = [inner.axis, outer.axis];
+        let geometry = &bearing.geometry;
+        let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
+        let sine_of = |edge: f64| libm::sin(edge.min(std::f64::consts::FRAC_PI_2));
+        let mut edge_sines = [0, 1].map(|side: usize| sine_of(self.races[side].edge.value));
+        for &pair in &set.table.active {
+            let (side, ball) = layout.race_and_ball(pair);
+            let contact = &set.table.contact[pair];
+            let race = &mut self.races[side];
+            let load = set.table.load[pair];
+            race.load.take(load, ball, time);
+            if load < WORTH_A_LOOK * race.load.value {
+                continue;
+            }
+            // A positive contact angle has the ball at +X of the outer groove's centre and at -X of
+            // the inner one's.
+            let sine = dot(contact.normal, axes[side]) * if side == 0 { -1.0 } else { 1.0 };
+            race.reversed.take(-sine, ball, time);
+            let law = &set.laws.races[side];
+            let half = law.semi_major_factor * contact.overlap.max(0.0).sqrt() / grooves[side];
+            // sin(α + ε) <= sin α + sin ε, and that is less than its series: most contacts need no arc sine.
+            let square = half * half;
+            let sine_of_half = half * (1.0 - square / 6.0 * (1.0 - square / 20.0));
+            if sine.abs() + sine_of_half > edge_sines[side] {
+                let angle = libm::asin(sine.abs().min(1.0));
+                if angle + half > race.edge.value {
+                    race.edge = Extreme { value: angle + half, ball, time };
+                    race.edge_angle = angle;
+                    edge_sines[side] = sine_of(race.edge.value);
+                }
+            }
+        }
+    }
+
+    /// As plain numbers, in a fixed order.
+    pub fn to_numbers(&self) -> Vec<f64> {
+        let of = |e: &Extreme| [e.value, e.ball as f64, e.time];
+        let races = self.races.iter().flat_map(|race| {
+            let all = [of(&race.load), of(&race.edge), of(&race.reversed)];
+            all.into_iter().flatten().chain([race.edge_angle])
+        });
+        let others = [&self.farthest, &self.apart, &self.between_balls];
+        races.chain(others.into_iter().flat_map(of)).collect()
+    }
+
+    /// Of several bearings, from [`Extremes::to_numbers`] of each; `None` if they are not as many.
+    pub fn all_from_numbers(numbers: &[f64]) -> Option<Vec<Extremes>> {
+        numbers.chunks(Extremes::default().to_numbers().len()).map(Extremes::from_numbers).collect()
+    }
+
+    /// From [`Extremes::to_numbers`]; `None` if they are not as many.
+    pub fn from_numbers(numbers: &[f64]) -> Option<Extremes> {
+        let mut left = numbers.iter().copied();
+        let mut next = || left.next();
+        let mut extremes = Extremes::default();
+        let one = |next: &mut dyn FnMut() -> Option<f64>| -> Option<Extreme> {
+            Some(Extreme { value: next()?, ball: next()? as usize, time: next()? })
+        };
+        for race in &mut extremes.races {
+            race.load = one(&mut next)?;
+            race.edge = one(&mut next)?;
+            race.reversed = one(&mut next)?;
+            race.edge_angle = next()?;
+        }
+        extremes.farthest = one(&mut next)?;
+        extremes.apart = one(&mut next)?;
+        extremes.between_balls = one(&mut next)?;
+        left.next().is_none().then_some(extremes)
+    }
+}

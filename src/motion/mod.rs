@@ -1,0 +1,42 @@
+//! Motion of an assembly in time: equations of motion, integrators, step control, coupling with full solids, validity
+//! checks.
+
+pub mod block_arrow;
+pub mod block_arrow_solids;
+pub mod block_arrow_terms;
+pub mod bonded_bushing;
+pub mod bonded_bushing_state;
+pub mod bore_friction;
+pub mod checkpoint;
+pub mod clocked;
+pub mod coupled_checkpoint;
+pub mod coupling;
+pub mod coupling_start;
+pub mod coupling_step;
+pub mod dormand_prince;
+pub mod elimination;
+pub mod energy;
+pub mod energy_ledger;
+pub mod error;
+pub mod error_control;
+pub mod explicit_shaft;
+pub mod explicit_solid;
+pub mod extremes;
+pub mod foretell;
+pub mod linearised;
+pub mod linearised_contacts;
+pub mod linearised_shafts;
+pub mod orbit_frame;
+pub mod race_in_bore;
+pub mod reduced_start;
+pub mod rk4;
+pub mod rolling_velocity;
+pub mod rosenbrock;
+pub mod simulation;
+pub mod stability;
+pub mod start;
+pub mod step_watch;
+pub mod system;
+pub mod turning_frame;
+pub mod unconstrained_axes;
+pub mod validity;

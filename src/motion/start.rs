@@ -1,0 +1,221 @@
+//! Where a simulation starts: at equilibrium and rolling, or at rest in nominal positions.
+
+use crate::assembly::lists::{Assembly, Bearing};
+use crate::assembly::loads::Drive;
+use crate::assembly::state::{BODY, BodyState, Layout, Places};
+use crate::ch2_housing::bearing::cage::Guidance;
+use crate::equilibrium::initial::{at_start, given_speed, orbital_speed, race_speeds};
+use crate::equilibrium::statics::StaticsError;
+use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
+use crate::members::rigid_body;
+use crate::members::rigid_body::BodyKinematics;
+use crate::members::section_attachments::{SectionAttachments, kinematics_at_attachment};
+use crate::motion::rolling_velocity;
+use crate::motion::rolling_velocity::Rates;
+use crate::motion::unconstrained_axes::check_unconstrained_axes;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// State vector at equilibrium of all bodies under the loads at t = 0, balls and cages rolling and
+/// all as fast as the equilibrium moves on (see [`quasi_static`]); what turns stands still for the
+/// equilibrium itself (see [`at_start`]).
+///
+/// What sits in a solid starts where it rests, the others in equilibrium with it there; solids start as their
+/// `start` says, still.
+///
+/// # Errors
+/// When the loads have no equilibrium, at t = 0 or, since nothing holds the bearing against them, later.
+pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
+    if !assembly.solids.is_empty() {
+        let held = at_equilibrium(&assembly.with_seats_held())?;
+        return Ok(with_solids(assembly, &held));
+    }
+    let now = at_start(assembly)?;
+    check_unconstrained_axes(assembly)?;
+    let rates = rolling_velocity::rates(assembly, &now);
+    let bodies: Vec<[f64; 5]> =
+        (0..assembly.bodies.len()).map(|body| now.place(assembly, body)).collect();
+    let positions: Vec<Vec<Vec3>> = now
+        .bearings
+        .iter()
+        .map(|bearing| bearing.balls.iter().map(|ball| ball.position.into()).collect())
+        .collect();
+    Ok(fill(assembly, &bodies, Some((&positions, &now.amplitudes)), &rates))
+}
+
+/// State vector with everything in its nominal position, balls and cages rolling at the given
+/// speeds; loads hit it suddenly.
+pub fn nominal(assembly: &Assembly) -> Vec<f64> {
+    let place = |body: &crate::assembly::lists::Body| {
+        let mut at = body.rest;
+        if let Some(race) = body.driven() {
+            for (coordinate, drive) in at.iter_mut().zip(&race.drives) {
+                if let Drive::Motion(profile) = drive {
+                    *coordinate = profile.value(0.0);
+                }
+            }
+        }
+        at
+    };
+    let bodies: Vec<[f64; 5]> = assembly.bodies.iter().map(place).collect();
+    with_solids(assembly, &fill(assembly, &bodies, None, &Rates::rest(assembly)))
+}
+
+/// A state without solids with them put in, the ledger behind.
+fn with_solids(assembly: &Assembly, state: &[f64]) -> Vec<f64> {
+    let places = Places::of(assembly);
+    let mut whole = vec![0.0; places.state_len()];
+    let bodies = places.body(assembly.bodies.len());
+    whole[..bodies].copy_from_slice(&state[..bodies]);
+    let bent = Places::of(&assembly.with_seats_held()).shafts(assembly);
+    for ((shaft, from), to) in assembly.shafts.iter().zip(bent).zip(places.shafts(assembly)) {
+        whole[to..to + shaft.entries()].copy_from_slice(&state[from..from + shaft.entries()]);
+    }
+    for (solid, at) in assembly.solids.iter().zip(places.solids(assembly)) {
+        whole[at..at + solid.start.len()].copy_from_slice(&solid.start);
+    }
+    whole
+}
+
+/// Positions of a bearing's balls on the pitch circle of its outer race.
+fn on_pitch_circle(bearing: &Bearing, outer: &BodyKinematics) -> Vec<Vec3> {
+    let g = &bearing.geometry;
+    let turn = outer.state.orientation;
+    let position = |ball: usize| {
+        let angle = bearing.ball_phase + TAU * ball as f64 / g.ball_count as f64;
+        let (sin, cos) = libm::sincos(angle);
+        let local = Vector3::new(0.0, g.pitch_radius * cos, g.pitch_radius * sin);
+        add(outer.state.position, (turn * local).into())
+    };
+    (0..g.ball_count).map(position).collect()
+}
+
+/// Positions of the balls of each bearing, amplitudes of each shaft.
+type Known<'k> = (&'k [Vec<Vec3>], &'k [Vec<f64>]);
+
+/// The state with bodies at these coordinates; balls stand on their pitch circles and shafts are straight where no
+/// positions and amplitudes are given.
+fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &Rates) -> Vec<f64> {
+    let places = Places::of(assembly);
+    let mut state = vec![0.0; places.state_len()];
+    let write = |state: &mut [f64], at: usize, body: &BodyState| {
+        state[at..at + BODY].copy_from_slice(&body.to_array());
+    };
+    let mut now = Vec::with_capacity(bodies.len());
+    for (index, (body, at)) in assembly.bodies.iter().zip(bodies).enumerate() {
+        let moved = moving(at, &rates.bodies[index], given_speed(body, 0.0));
+        write(&mut state, places.body(index), &moved);
+        now.push(BodyKinematics::new(moved));
+    }
+    let shafts = places.shafts(assembly);
+    for (index, (shaft, at)) in assembly.shafts.iter().zip(&shafts).enumerate() {
+        let (gone, speed) = state[*at..*at + shaft.entries()].split_at_mut(shaft.amplitudes());
+        if let Some((_, amplitudes)) = known {
+            gone.copy_from_slice(&amplitudes[index]);
+        }
+        speed.copy_from_slice(&rates.shafts[index]);
+    }
+    let mut holds = SectionAttachments::new(assembly, &now);
+    holds.place(assembly, &shafts, &now, &state);
+    for (index, (bearing, layout)) in assembly.bearings.iter().zip(Layout::of(assembly)).enumerate()
+    {
+        let [inner, outer] = [0, 1].map(|side| {
+            let mount = &bearing.mounts[side];
+            kinematics_at_attachment(&holds.bearings[index][side], &now[mount.body], mount)
+        });
+        let orbital_speed = orbital_speed(assembly, bearing, 0.0);
+        let at_rest = on_pitch_circle(bearing, &outer);
+        let positions = known.map_or(&at_rest, |(positions, _)| &positions[index]);
+        // What turns with the outer race's tilts and not about its axis.
+        let axis = outer.motion.axis;
+        let [_, outer_speed] = race_speeds(assembly, bearing, 0.0);
+        let tilting = if outer_speed == 0.0 {
+            outer.state.spin
+        } else {
+            add_scaled(outer.state.spin, -outer_speed, axis)
+        };
+        if layout.has_cage {
+            let mut cage = outer.state;
+            if let Some(law) = &bearing.cage {
+                if law.contacts.guidance == Guidance::InnerRace {
+                    (cage.position, cage.orientation) =
+                        (inner.state.position, inner.state.orientation);
+                }
+                let along: Vec<f64> =
+                    positions.iter().map(|at| dot(sub(*at, cage.position), axis)).collect();
+                cage.position = add_scaled(cage.position, among(&along, law.room(bearing)), axis);
+            }
+            cage.spin = add_scaled(tilting, orbital_speed, axis);
+            write(&mut state, layout.cage(), &cage);
+        }
+        for (ball, position) in positions.iter().enumerate() {
+            let mut body = BodyState::at_rest(*position);
+            let from_axis = sub(*position, outer.motion.position);
+            let outward = add_scaled(from_axis, -dot(from_axis, axis), axis);
+            let with_outer = add(outer.motion.velocity, cross(tilting, from_axis));
+            let [along, away] = rates.balls[index][ball];
+            let own = add_scaled(scale(axis, along), away / norm(outward), outward);
+            body.velocity = add(cross(scale(axis, orbital_speed), outward), add(with_outer, own));
+            body.spin = rolling_spin(bearing, [&inner, &outer], outer_speed, &body, outward);
+            layout.set_ball(&mut state, ball, &body);
+        }
+        // Lanes beyond the last ball hold a ball that stands in the groove and is never looked at.
+        for ball in layout.balls..layout.padded {
+            layout.set_ball(&mut state, ball, &BodyState::at_rest(positions[0]));
+        }
+    }
+    state
+}
+
+/// How far along its axis a cage stands from the middle of its bearing (m), where balls stand at these places
+/// along it: nowhere but in the middle as long as all have room there, as they are wide apart then; among the balls
+/// where they have all gone to one side, as in an angular-contact bearing pushed the wrong way.
+fn among(balls: &[f64], room: f64) -> f64 {
+    let least = balls.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = balls.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if most.max(-least) <= room { 0.0 } else { 0.5 * (least + most) }
+}
+
+/// A race at x, y, z, tilt_y, tilt_z, whose coordinates change at `rates`, turning at `speed`.
+fn moving(at: &[f64; 5], rates: &[f64; 5], speed: f64) -> BodyState {
+    let now = rigid_body::fixed(at);
+    let mut body = now.state;
+    let axis = body.axis();
+    let [e2, e3] = now.tilt_directions;
+    body.velocity = [rates[0], rates[1], rates[2]];
+    let tilting = add_scaled(scale(e2, rates[3] * now.cos_lambda), rates[4], e3);
+    body.spin = add_scaled(tilting, speed, axis);
+    body
+}
+
+/// Spin that rolls without slip on both races: about the meridian direction across the line from
+/// the outer to the inner contact, as fast as the races' surfaces ask for.
+fn rolling_spin(
+    bearing: &Bearing,
+    [inner, outer]: [&BodyKinematics; 2],
+    outer_speed: f64,
+    ball: &BodyState,
+    outward: Vec3,
+) -> Vec3 {
+    let angle = bearing.geometry.contact_angle;
+    let axis = outer.motion.axis;
+    let out = scale(outward, 1.0 / norm(outward));
+    let (sin, cos) = libm::sincos(angle);
+    let normal = add_scaled(scale(out, cos), sin, axis);
+    let tangent = cross(axis, out);
+    let roll_axis = cross(tangent, normal);
+    let radius = bearing.geometry.ball_radius;
+    let inner_point = scale(normal, -radius);
+    let surface = |race: &BodyKinematics, point: Vec3| {
+        let arm = sub(add(ball.position, point), race.motion.position);
+        dot(add(race.motion.velocity, cross(race.motion.spin, arm)), tangent)
+    };
+    let mut difference = surface(inner, inner_point);
+    if outer_speed != 0.0 {
+        difference -= surface(outer, scale(inner_point, -1.0));
+    }
+    // Centre plus spin × arm on either side: half of what the surfaces differ by.
+    let half_difference = 0.5 * difference;
+    let per_spin = dot(cross(roll_axis, inner_point), tangent);
+    scale(roll_axis, half_difference / per_spin)
+}

@@ -1,0 +1,246 @@
+//! Whether the step is still short enough: contacts that are pressed harder swing faster, and their
+//! traction and damping decay faster, than at the start.
+//!
+//! A run above its limit need not fail: traction that overshoots swings to and fro in a limit cycle
+//! that keeps its energy. So the contacts are looked at every few steps, which costs next to
+//! nothing, and the Jacobian where they have become so stiff that the limit may have come down to
+//! the step. A step that was given is refused then; one that follows from the limit is shortened.
+
+use crate::assembly::lists::Bearing;
+use crate::assembly::plan::Stage;
+use crate::ch2_housing::bearing::cage::CageForce;
+use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
+use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
+use crate::members::ball_set::BallSet;
+use crate::motion::simulation::{Integrator, Simulation, SimulationError, Stepping};
+use crate::motion::stability::step_limit;
+use crate::motion::system::System;
+
+/// Steps from one look at the contacts to the next.
+pub const LOOK_EVERY: u64 = 16;
+
+/// How far a given step may lie above the limit before the run is refused: so much is the limit
+/// itself off from the observed one.
+pub const TOLERATED: f64 = 1.1;
+
+/// With traction the Jacobian is asked after 16, 32, 64 … steps and then every so many, whatever the
+/// contacts say: a start that rolls with spin keeps slip off the steep onset, to which it comes back
+/// within some tenths of a millisecond. That costs some per cent of the steps.
+const JUDGE_EVERY: u64 = 4096;
+
+/// A step that follows from the limit is shortened once it is this much above its fraction: at the
+/// limit itself nothing decays any more, and the ledger suffers long before.
+const ROOM: f64 = 1.5;
+
+/// Where contacts are damped the limit may come down by this factor more than stiffness and damping
+/// say each: what swings turns into what decays, whose fast root outgrows both.
+const DAMPED: f64 = 1.5;
+
+/// What the contacts of an evaluation bind the step by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stiffness {
+    /// Largest contact stiffness over mass, 1/s².
+    pub oscillation: f64,
+    /// Fastest decay of a slip or of an approach, at the steep onset of traction, 1/s.
+    pub decay: f64,
+}
+
+impl Stiffness {
+    /// By what factor the limit may have come down since `before`.
+    fn growth(&self, before: &Stiffness) -> f64 {
+        let ratio = |now: f64, before: f64| if now > 0.0 { now / before } else { 0.0 };
+        let swings = ratio(self.oscillation, before.oscillation).sqrt();
+        swings.max(ratio(self.decay, before.decay))
+    }
+
+    fn largest(&self, other: &Stiffness) -> Stiffness {
+        Stiffness {
+            oscillation: self.oscillation.max(other.oscillation),
+            decay: self.decay.max(other.decay),
+        }
+    }
+}
+
+/// Stiffness of the contacts as they were evaluated last.
+pub fn stiffness(system: &System) -> Stiffness {
+    let mut most = Stiffness::default();
+    for (set, bearing) in system.sets.iter().zip(&system.assembly.bearings) {
+        most = most.largest(&stiffness_of(system, set, bearing));
+    }
+    for (seat, now) in system.assembly.seats.iter().zip(&system.seats) {
+        let inertia = system.assembly.bodies[seat.race.body].inertia();
+        let per_mass = inertia.map_or(0.0, |inertia| 1.0 / inertia.mass);
+        let touching: f64 = now.touching.iter().map(|node| node.stiffness).sum();
+        let oscillation = touching * per_mass;
+        most = most.largest(&Stiffness { oscillation, decay: 0.0 });
+    }
+    most
+}
+
+fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness {
+    let radius = set.laws.ball_radius;
+    let per_mass = 1.0 / bearing.ball.mass;
+    // A force at the surface moves it by force/mass and by turning the ball.
+    let at_surface = per_mass + radius * radius / bearing.ball.axial;
+    let mut most = Stiffness::default();
+    for &pair in &set.table.active {
+        let law = &set.laws.races[set.layout.race_and_ball(pair).0];
+        let overlap = set.table.contact[pair].overlap.max(0.0);
+        let elastic = normal_load(law.stiffness, overlap);
+        let slope = match &set.laws.traction {
+            TractionLaw::None => 0.0,
+            law => coefficient_and_slope(law, 0.0, set.table.sliding[pair].entrainment).1,
+        };
+        most = most.largest(&Stiffness {
+            oscillation: 1.5 * law.stiffness * overlap.sqrt() * per_mass,
+            decay: (slope * set.table.load[pair] * at_surface)
+                .max(set.damping[pair] * elastic * per_mass),
+        });
+    }
+    if let Some(law) = &bearing.ball_contact {
+        for meeting in set.meetings.iter().filter(|meeting| meeting.normal_load > 0.0) {
+            most = most.largest(&Stiffness {
+                // Both balls move.
+                oscillation: 2.0 * per_mass * normal_stiffness(law.stiffness, meeting.overlap),
+                decay: 2.0 * at_surface * law.friction * meeting.normal_load
+                    / law.regularisation_speed,
+            });
+        }
+    }
+    let Some(cage) = &bearing.cage else { return most };
+    let of_cage = |load: f64, depth: f64, moved: f64| Stiffness {
+        oscillation: moved
+            * match cage.contacts.force {
+                CageForce::Penalty { stiffness } => stiffness,
+                CageForce::Hertz { stiffness } => 1.5 * stiffness * depth.max(0.0).sqrt(),
+            },
+        decay: cage.contacts.friction * load / cage.contacts.regularisation_speed * moved,
+    };
+    let per_cage =
+        system.assembly.bodies[cage.body].inertia().map_or(0.0, |inertia| 1.0 / inertia.mass);
+    let pockets = set.pockets.iter().map(|contact| (contact, at_surface + per_cage));
+    let guides = set.guides.iter().map(|contact| (contact, per_cage));
+    for (contact, moved) in pockets.chain(guides).filter(|(contact, _)| contact.normal_load > 0.0) {
+        most = most.largest(&of_cage(contact.normal_load, contact.penetration, moved));
+    }
+    most
+}
+
+/// What is known of the limit so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepWatch {
+    /// Times the Jacobian was asked during the run.
+    pub judged: u64,
+    /// Smallest limit found, s; none where nothing was stiff yet.
+    pub smallest: Option<f64>,
+    /// Stiffest that the contacts were when it was asked.
+    pub stiffest: Stiffness,
+    /// Largest step over limit above one, and when, s.
+    pub exceeded: Option<[f64; 2]>,
+    /// Of a step that follows from the limit only.
+    pub shortened: Option<Shortened>,
+}
+
+/// How the limit has come down on a step that follows from it. The present step is the shortest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shortened {
+    pub times: u64,
+    /// Step at the start, s.
+    pub from: f64,
+    /// When the last time was, s.
+    pub last: f64,
+}
+
+impl StepWatch {
+    /// `bound` is the part of the limit that the step must not exceed.
+    fn is_due(&self, now: &Stiffness, step: f64, bound: f64, damped: bool) -> bool {
+        let growth = now.growth(&self.stiffest);
+        let margin = if damped { DAMPED } else { 1.0 } / bound;
+        // Two per cent, so that a step close to its limit does not ask again and again.
+        growth > 1.02 && self.smallest.is_none_or(|limit| limit < margin * growth * step)
+    }
+}
+
+impl Simulation {
+    /// Looks at the contacts of the last evaluation, and at the Jacobian if they ask for it. Returns
+    /// the step to go on with, where the present one follows from the limit and has come above it.
+    ///
+    /// # Errors
+    /// A given step above the largest stable one.
+    pub fn watch_step(&mut self) -> Result<Option<f64>, SimulationError> {
+        let now = stiffness(&self.system);
+        let sets = &self.system.sets;
+        let damped = sets.iter().flat_map(|set| &set.damping).any(|damping| *damping > 0.0);
+        let steps = self.steps;
+        let on_schedule = sets.iter().any(|set| set.laws.traction != TractionLaw::None)
+            && (steps.is_power_of_two() || steps.is_multiple_of(JUDGE_EVERY));
+        let due = on_schedule || self.step_watch.is_due(&now, self.step_size, self.bound(), damped);
+        if due { self.judge_step(now) } else { Ok(None) }
+    }
+
+    /// The part of the limit that the step must not exceed.
+    fn bound(&self) -> f64 {
+        match self.options.stepping {
+            Stepping::FractionOfLimit(fraction) => (ROOM * fraction).min(1.0),
+            Stepping::Fixed(_) | Stepping::Accuracy(_) => 1.0,
+        }
+    }
+
+    /// Goes on with a shorter step and keeps account of it.
+    pub fn shorten_step(&mut self, step: f64) {
+        let earlier = self.step_watch.shortened;
+        self.step_watch.shortened = Some(Shortened {
+            times: earlier.map_or(0, |earlier| earlier.times) + 1,
+            from: earlier.map_or(self.step_size, |earlier| earlier.from),
+            last: self.time,
+        });
+        self.step_size = step;
+    }
+
+    /// Compares the step with the limit at the present state, whatever the contacts say.
+    ///
+    /// # Errors
+    /// A given step above the largest stable one.
+    pub fn judge_step_now(&mut self) -> Result<Option<f64>, SimulationError> {
+        self.system.evaluate(self.time, &self.state, &mut self.rates);
+        self.judge_step(stiffness(&self.system))
+    }
+
+    fn judge_step(&mut self, now: Stiffness) -> Result<Option<f64>, SimulationError> {
+        // The limit is that of Runge–Kutta.
+        if self.options.integrator != Integrator::RungeKutta {
+            return Ok(None);
+        }
+        // The Jacobian's evaluations are not those of the steps: they are counted as judgements.
+        let (work, ran) = (self.system.work, self.system.ran.clone());
+        let limit = step_limit(&mut self.system, self.time, &self.state);
+        (self.system.work, self.system.ran) = (work, ran);
+        self.system.ran.whole.add(Stage::StabilityLimit, 1);
+        let watch = &mut self.step_watch;
+        watch.judged += 1;
+        watch.stiffest = watch.stiffest.largest(&now);
+        let Some(limit) = limit else { return Ok(None) };
+        watch.smallest = Some(watch.smallest.map_or(limit.step, |least| least.min(limit.step)));
+        let ratio = self.step_size / limit.step;
+        if let Stepping::FractionOfLimit(fraction) = self.options.stepping {
+            if ratio <= self.bound() {
+                return Ok(None);
+            }
+            self.limit = Some(limit);
+            return Ok(Some(fraction * limit.step));
+        }
+        if ratio > 1.0 && watch.exceeded.is_none_or(|[most, _]| ratio > most) {
+            watch.exceeded = Some([ratio, self.time]);
+        }
+        if ratio <= TOLERATED {
+            return Ok(None);
+        }
+        Err(SimulationError::StepTooLong {
+            size: self.step_size,
+            limit: limit.step,
+            reason: limit.reason(),
+            time: self.time,
+            step: self.steps,
+        })
+    }
+}

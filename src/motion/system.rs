@@ -1,0 +1,395 @@
+//! The equations of motion: state in, rates out.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::loads::Rotation;
+use crate::assembly::mount::Mount;
+use crate::assembly::plan::counts::StageCounts;
+use crate::assembly::plan::steps::Steps;
+use crate::assembly::plan::{Item, Stage, motion};
+use crate::assembly::state::{
+    BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, Places, SPIN, VELOCITY,
+};
+use crate::ch2_housing::bearing::cage::AxisMotion;
+use crate::kinematics::vec3::Vec3;
+use crate::members::ball_set::BallSet;
+use crate::members::connection::{Connection, SpringForces};
+use crate::members::contacts::{Kernel, Want, Work};
+use crate::members::dents;
+use crate::members::flexible_shaft::Section;
+use crate::members::housing_fit::SeatNow;
+use crate::members::reduced_solid::ModalEnergy;
+use crate::members::rigid_body;
+use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
+use crate::members::section_attachments::{
+    SectionAttachment, SectionAttachments, kinematics_at_attachment, wrench_on_body,
+};
+use crate::members::unbalance::UnbalanceCoupling;
+
+/// An assembly with everything precomputed and room to work in.
+pub struct System {
+    pub assembly: Assembly,
+    pub places: Places,
+    /// One for each bearing.
+    pub sets: Vec<BallSet>,
+    /// One for each seat.
+    pub seats: Vec<SeatNow>,
+    /// First entry of each reduced solid in the state.
+    pub solids: Vec<usize>,
+    /// First entry of each connection's Maxwell elements in the state.
+    pub connections: Vec<usize>,
+    /// First entry of each shaft that bends, and what takes hold of them.
+    pub shafts: Vec<usize>,
+    pub holds: SectionAttachments,
+    /// Every body as last evaluated.
+    pub bodies: Vec<BodyKinematics>,
+    /// What something outside does to a body, about its centre; stays as it is within a step.
+    pub outside: Vec<Option<Wrench>>,
+    pub driver: Kernel,
+    pub work: Work,
+    /// Items of one evaluation; those that say *does* are what is run.
+    pub plan: Vec<Item>,
+    pub(crate) steps: Steps,
+    /// How often each stage has run.
+    pub ran: StageCounts,
+    /// Profiles are read no later than this, s: in a step that ends at a corner, just before it, so
+    /// that no stage sees what comes after. Infinite otherwise.
+    pub latest: f64,
+    pub(crate) loads: Vec<Wrench>,
+    pub(crate) swing: UnbalanceCoupling,
+}
+
+impl System {
+    pub fn new(assembly: impl Into<Assembly>, driver: Kernel) -> System {
+        let assembly = assembly.into();
+        let plan = motion::evaluation(&assembly, &[]);
+        let steps = Steps::new(&plan, &assembly);
+        // Until the first evaluation all stand where their springs are at rest.
+        let bodies: Vec<BodyKinematics> =
+            assembly.bodies.iter().map(|body| rigid_body::fixed(&body.rest)).collect();
+        let sets = assembly
+            .bearings
+            .iter()
+            .zip(Layout::of(&assembly))
+            .zip(&steps.bearings)
+            .map(|((bearing, layout), steps)| BallSet::new(bearing, *steps, layout, &bodies))
+            .collect();
+        let places = Places::of(&assembly);
+        let seats = assembly.seats.iter();
+        System {
+            seats: seats.map(|seat| SeatNow::new(seat, &assembly.solids[seat.solid])).collect(),
+            solids: places.solids(&assembly),
+            connections: places.connections(&assembly),
+            shafts: places.shafts(&assembly),
+            holds: SectionAttachments::new(&assembly, &bodies),
+            places,
+            sets,
+            outside: vec![None; bodies.len()],
+            loads: vec![Wrench::default(); bodies.len()],
+            swing: UnbalanceCoupling::new(&assembly),
+            bodies,
+            work: Work::default(),
+            ran: StageCounts::new(
+                assembly.bearings.len(),
+                assembly.bodies.len(),
+                assembly.solids.len(),
+                assembly.seats.len(),
+            ),
+            plan,
+            steps,
+            latest: f64::INFINITY,
+            assembly,
+            driver,
+        }
+    }
+
+    pub fn body_state(&self, state: &[f64], body: usize) -> BodyState {
+        let at = self.places.body(body);
+        BodyState::from_slice(&state[at..at + BODY])
+    }
+
+    /// Takes all bodies to where they are at time `t`, given motions imposed.
+    fn place(&mut self, t: f64, state: &[f64]) {
+        let t = t.min(self.latest);
+        for &index in &self.steps.moving {
+            let here = self.body_state(state, index);
+            self.bodies[index] = rigid_body::body_now(&self.assembly.bodies[index], t, here);
+        }
+        self.holds.place(&self.assembly, &self.shafts, &self.bodies, state);
+        let holds = &self.holds.bearings;
+        for ((set, bearing), holds) in self.sets.iter_mut().zip(&self.assembly.bearings).zip(holds)
+        {
+            set.place(bearing, holds, &self.bodies);
+        }
+    }
+
+    /// What a connection does in a state; call after [`System::evaluate`] at the same state.
+    pub fn pull(&self, state: &[f64], connection: usize) -> SpringForces {
+        let (at, ends) = (self.connections[connection], self.ends(connection));
+        let connection = &self.assembly.connections[connection];
+        let elongated = &state[at..at + 6 * connection.maxwell().len()];
+        connection.pull(ends.each_ref(), elongated)
+    }
+
+    /// [`Connection::reach`] as evaluated last.
+    pub(crate) fn extension(&self, connection: usize) -> [f64; 2] {
+        self.assembly.connections[connection].extension(self.ends(connection).each_ref())
+    }
+
+    /// Both ends of a connection as evaluated last.
+    fn ends(&self, connection: usize) -> [BodyKinematics; 2] {
+        let holds = &self.holds.connections[connection];
+        let ends = &self.assembly.connections[connection].ends;
+        [0, 1].map(|end| {
+            kinematics_at_attachment(&holds[end], &self.bodies[ends[end].body], &ends[end])
+        })
+    }
+
+    /// Rates of the whole state vector at time `t`.
+    pub fn evaluate(&mut self, t: f64, state: &[f64], rates: &mut [f64]) {
+        self.evaluate_with(Want::Forces, t, state, rates);
+    }
+
+    /// As [`System::evaluate`], with the slopes of traction if they are wanted.
+    pub fn evaluate_with(&mut self, want: Want, t: f64, state: &[f64], rates: &mut [f64]) {
+        self.work.evaluations += 1;
+        self.place(t, state);
+        let gravity = self.steps.gravity.then_some(self.assembly.gravity);
+        let mut ledger = [0.0; LEDGER];
+        self.loads.fill(Wrench::default());
+        self.shaft_rates(t, state, rates, &mut ledger);
+        let Assembly { bearings, shafts, .. } = &self.assembly;
+        let bent = (shafts.as_slice(), self.shafts.as_slice(), state);
+        let holds = &self.holds;
+        for (((set, bearing), own), holds) in
+            self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings).zip(&holds.bearings)
+        {
+            let (driver, work) = (self.driver, &mut self.work);
+            set.evaluate(bearing, gravity, driver, want, state, rates, &mut ledger, work, own);
+            self.ran.whole.add(Stage::Gravity, own.take(Stage::Gravity));
+            for (side, mount) in bearing.mounts.iter().enumerate() {
+                let sits = (&set.races[side], &self.bodies[mount.body]);
+                let loads = &set.on_races[side];
+                let loads = wrench_on_body((&holds[side], mount), sits, loads, bent, rates);
+                self.loads[mount.body].add(&loads);
+            }
+            if let Some(cage) = &bearing.cage {
+                self.loads[cage.body].add(&set.on_cage);
+            }
+        }
+        let connections: &[Connection] =
+            if self.steps.springs { &self.assembly.connections } else { &[] };
+        for (index, connection) in connections.iter().enumerate() {
+            let (at, ends) = (self.connections[index], self.ends(index));
+            let elements = connection.maxwell();
+            let elongated = &state[at..at + 6 * elements.len()];
+            let pull = connection.pull([&ends[0], &ends[1]], elongated);
+            for (k, element) in elements.iter().enumerate() {
+                for i in 0..6 {
+                    let e = at + 6 * k + i;
+                    rates[e] = pull.rates[i] - state[e] / element.relaxation_time;
+                }
+            }
+            ledger[Ledger::Foundation as usize] += pull.loss;
+            for (end, mount) in connection.ends.iter().enumerate() {
+                let sits = (&ends[end], &self.bodies[mount.body]);
+                let hold = &holds.connections[index][end];
+                let loads = wrench_on_body((hold, mount), sits, &pull.on[end], bent, rates);
+                self.loads[mount.body].add(&loads);
+            }
+            self.ran.whole.add(Stage::Springs, 1);
+        }
+        self.solid_rates(t, state, rates, &mut ledger);
+        for moving in 0..self.steps.moving.len() {
+            self.body_rates(self.steps.moving[moving], t, state, rates, &mut ledger);
+        }
+        let at = self.places.ledger();
+        rates[at..at + LEDGER].copy_from_slice(&ledger);
+        self.ran.whole.add(Stage::Ledger, 1);
+    }
+
+    /// Rates of the shafts that bend, without what holds them.
+    fn shaft_rates(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        rates: &mut [f64],
+        ledger: &mut [f64; LEDGER],
+    ) {
+        let time = t.min(self.latest);
+        for &(index, steps) in &self.steps.shafts {
+            let (shaft, at) = (&self.assembly.shafts[index], self.shafts[index]);
+            let body = &self.assembly.bodies[shaft.body];
+            let acceleration = match body.driven().map(|driven| &driven.rotation) {
+                Some(Rotation::Speed(profile)) => Some(profile.rate(time)),
+                Some(Rotation::Torque(_)) => None,
+                None => Some(0.0),
+            };
+            let entries = at..at + shaft.entries();
+            let (now, own) = (&self.bodies[shaft.body], &mut self.ran.bodies[shaft.body]);
+            let bent = (now, &state[entries.clone()]);
+            let done = shaft.rates(steps, time, acceleration, bent, &mut rates[entries], own);
+            ledger[Ledger::Foundation as usize] += done.damped;
+            ledger[Ledger::Drives as usize] += done.driven;
+            self.loads[shaft.body].add(&done.on_body);
+        }
+    }
+
+    /// Rates of the reduced solids; what their seats do to bodies is summed.
+    fn solid_rates(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        rates: &mut [f64],
+        ledger: &mut [f64; LEDGER],
+    ) {
+        let t = t.min(self.latest);
+        let Assembly { solids, seats, shafts, .. } = &self.assembly;
+        let bent = (shafts.as_slice(), self.shafts.as_slice(), state);
+        for &(index, steps) in &self.steps.solids {
+            let (solid, at) = (&solids[index], self.solids[index]);
+            let (gone, speeds) = state[at..at + 2 * solid.count()].split_at(solid.count());
+            let (to, accelerations) = rates[at..at + 2 * solid.count()].split_at_mut(solid.count());
+            to.copy_from_slice(speeds);
+            let own = &mut self.ran.solids[index];
+            let [damped, driven] =
+                solid.accelerations(steps, t, [gone, speeds], accelerations, own);
+            ledger[Ledger::Foundation as usize] += damped;
+            ledger[Ledger::Drives as usize] += driven;
+        }
+        for &index in &self.steps.seats {
+            let (seat, now) = (&seats[index], &mut self.seats[index]);
+            let (solid, at) = (&solids[seat.solid], self.solids[seat.solid]);
+            let body = &self.bodies[seat.race.body];
+            let hold = &self.holds.seats[index];
+            let race = kinematics_at_attachment(hold, body, &seat.race);
+            let gone = &state[at..at + solid.count()];
+            let pushes = &mut rates[at + solid.count()..at + 2 * solid.count()];
+            let loads = now.evaluate(seat, solid, &race, t, gone, pushes);
+            let sits = (&race, body);
+            let loads = wrench_on_body((hold, &seat.race), sits, &loads, bent, rates);
+            self.loads[seat.race.body].add(&loads);
+            // What lets the race grow works against the contact.
+            ledger[Ledger::Drives as usize] += now.contact.radial_load * seat.radius.rate(t);
+            self.ran.seats[index].add(Stage::Seat, 1);
+        }
+    }
+
+    /// Seats as the assembly has them now.
+    pub(crate) fn renew_seats(&mut self) {
+        let solids = &self.assembly.solids;
+        let seats = self.assembly.seats.iter();
+        self.seats = seats.map(|seat| SeatNow::new(seat, &solids[seat.solid])).collect();
+    }
+
+    /// How far the shapes of a reduced solid have gone (m), and how fast (m/s).
+    pub fn shapes_of<'s>(&self, state: &'s [f64], solid: usize) -> (&'s [f64], &'s [f64]) {
+        let (at, count) = (self.solids[solid], self.assembly.solids[solid].count());
+        state[at..at + 2 * count].split_at(count)
+    }
+
+    /// Entries of a shaft that bends.
+    pub fn bent<'s>(&self, state: &'s [f64], shaft: usize) -> &'s [f64] {
+        let at = self.shafts[shaft];
+        &state[at..at + self.assembly.shafts[shaft].entries()]
+    }
+
+    /// A race of a bearing in a state, whatever was evaluated last; given motions are not imposed.
+    pub fn race_of(&self, state: &[f64], bearing: usize, side: usize) -> BodyKinematics {
+        let mount = &self.assembly.bearings[bearing].mounts[side];
+        let body = BodyKinematics::new(self.body_state(state, mount.body));
+        self.on_body(&self.holds.bearings[bearing][side], state, &body, mount)
+    }
+
+    /// The motion of [`System::race_of`] without what follows from it.
+    pub(crate) fn race_motion(&self, state: &[f64], bearing: usize, side: usize) -> AxisMotion {
+        let mount = &self.assembly.bearings[bearing].mounts[side];
+        if self.holds.bearings[bearing][side].is_none() && mount.is_direct() {
+            return rigid_body::axis_motion(&self.body_state(state, mount.body));
+        }
+        self.race_of(state, bearing, side).motion
+    }
+
+    /// What sits at a mount of a body, bent as a state has it.
+    pub fn on_body(
+        &self,
+        hold: &Option<SectionAttachment>,
+        state: &[f64],
+        body: &BodyKinematics,
+        mount: &Mount,
+    ) -> BodyKinematics {
+        match hold {
+            None => kinematics_at_mount(body, mount),
+            Some(hold) => {
+                let shaft = &self.assembly.shafts[hold.shaft];
+                let bend = shaft.bend(self.shafts[hold.shaft], state);
+                hold.section.place(body, mount, &bend).race
+            }
+        }
+    }
+
+    /// A section of a shaft that bends, where a state has it; given motions are not imposed.
+    pub fn section_now(&self, state: &[f64], shaft: usize, section: &Section) -> BodyKinematics {
+        let (of, at) = (&self.assembly.shafts[shaft], self.shafts[shaft]);
+        let now = BodyKinematics::new(self.body_state(state, of.body));
+        section.place(&now, &Mount::at_centre(of.body), &of.bend(at, state)).race
+    }
+
+    /// Acceleration of a body's centre (m/s²) and of its angular velocity (rad/s²), inertial axes, out of the rates.
+    pub fn acceleration_of(&self, rates: &[f64], body: usize) -> [Vec3; 2] {
+        let at = self.places.body(body);
+        [VELOCITY, SPIN].map(|part| [0, 1, 2].map(|i| rates[at + part + i]))
+    }
+
+    /// Energy of a reduced solid in a state.
+    pub fn energy_of_solid(&self, state: &[f64], solid: usize) -> ModalEnergy {
+        let (gone, speeds) = self.shapes_of(state, solid);
+        self.assembly.solids[solid].energy(gone, speeds)
+    }
+
+    /// Writes prescribed positions and rates into the state, and makes quaternions unit again.
+    pub fn tidy(&self, t: f64, state: &mut [f64]) {
+        let t = t.min(self.latest);
+        for &index in &self.steps.moving {
+            let body = &self.assembly.bodies[index];
+            let mut now = rigid_body::body_now(body, t, self.body_state(state, index)).state;
+            now.orientation.renormalize();
+            let at = self.places.body(index);
+            state[at..at + BODY].copy_from_slice(&now.to_array());
+        }
+        for set in &self.sets {
+            let layout = &set.layout;
+            for ball in 0..layout.balls {
+                let parts = [0, 1, 2, 3].map(|i| layout.ball(ORIENTATION + i) + ball);
+                let square: f64 = parts.iter().map(|&at| state[at] * state[at]).sum();
+                let per_length = 1.0 / square.sqrt();
+                for at in parts {
+                    state[at] *= per_length;
+                }
+            }
+        }
+    }
+
+    /// The longest step, s, in which no ball goes by a dent unseen; a bearing without dents has none.
+    pub(crate) fn longest_past_dents(&self, state: &[f64]) -> f64 {
+        let dented = self.sets.iter().filter(|set| set.steps.dents);
+        dented.fold(f64::INFINITY, |least, set| least.min(dents::longest_step(set, state)))
+    }
+
+    /// History of contact damping, once a step and after an evaluation; `was_loaded` holds all pairs of
+    /// all bearings. Returns whether a damping factor has changed.
+    pub fn commit_damping(&mut self, was_loaded: &mut [bool]) -> bool {
+        let mut changed = false;
+        let mut left = was_loaded;
+        for (set, bearing) in self.sets.iter_mut().zip(&self.assembly.bearings) {
+            let (own, others) = left.split_at_mut(set.damping.len());
+            changed |= set.commit_damping(bearing, own);
+            left = others;
+        }
+        changed
+    }
+
+    /// Pairs of ball and race in all bearings, lanes beyond the last ball included.
+    pub fn pairs(&self) -> usize {
+        self.sets.iter().map(|set| set.damping.len()).sum()
+    }
+}

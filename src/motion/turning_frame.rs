@@ -1,0 +1,91 @@
+//! Frames that turn with each body within a step.
+//!
+//! A polynomial in time follows a turn ωh with an error of (ωh)³: at some ten thousand revolutions a minute that, and
+//! nothing a bearing does, would say how long a step may be. The quaternion is q = r p in place of it, r the turn at the
+//! angular velocity Ω that the body has where the step begins: ṗ = r*(q̇ − ½ Ω q), nothing where it goes on turning so.
+//! Ω is constant within a step, so that any method keeps its order.
+
+use crate::assembly::state::{ORIENTATION, Places, SPIN, quaternion_rate};
+use crate::kinematics::vec3::{Vec3, dot, scale};
+use nalgebra::Quaternion;
+
+/// Angular velocities of the bodies' frames, rad/s, inertial axes.
+#[derive(Clone, Debug)]
+pub struct TurningFrames {
+    frames: Vec<Frame>,
+}
+
+#[derive(Clone, Debug)]
+struct Frame {
+    /// First entry of the body.
+    body: usize,
+    spin: Vec3,
+    /// The turn when [`TurningFrames::turn`] was last called.
+    turned: Quaternion<f64>,
+}
+
+impl TurningFrames {
+    pub fn new(places: &Places, bodies: impl Iterator<Item = usize>) -> TurningFrames {
+        let frame = |body| Frame {
+            body: places.body(body),
+            spin: [0.0; 3],
+            turned: Quaternion::identity(),
+        };
+        TurningFrames { frames: bodies.map(frame).collect() }
+    }
+
+    /// Takes the angular velocities of the bodies; the frames lie along inertial axes.
+    pub fn follow(&mut self, state: &[f64]) {
+        for frame in &mut self.frames {
+            frame.spin = [0, 1, 2].map(|i| state[frame.body + SPIN + i]);
+            frame.turned = Quaternion::identity();
+        }
+    }
+
+    /// Turns the frames to where they are `time` after the step began.
+    pub fn turn(&mut self, time: f64) {
+        for frame in &mut self.frames {
+            let spin = dot(frame.spin, frame.spin).sqrt();
+            let (sin, cos) = libm::sincos(0.5 * spin * time);
+            let axis = if spin > 0.0 { scale(frame.spin, sin / spin) } else { [0.0; 3] };
+            frame.turned = Quaternion::new(cos, axis[0], axis[1], axis[2]);
+        }
+    }
+
+    /// Writes `time` times the rates at which the frames turn the quaternions of `state` to the places of these (see
+    /// [`crate::motion::orbit_frame::OrbitFrames::drift`]).
+    pub fn drift(&self, time: f64, state: &[f64], to: &mut [f64]) {
+        for frame in &self.frames {
+            let at = frame.body + ORIENTATION;
+            let rate = quaternion_rate(quaternion(state, at), frame.spin);
+            (0..4).for_each(|i| to[at + i] = time * rate[i]);
+        }
+    }
+
+    /// Quaternions of `state` from the frames as they are turned to inertial axes.
+    pub fn to_inertial(&self, state: &mut [f64]) {
+        for frame in &self.frames {
+            let at = frame.body + ORIENTATION;
+            let [w, i, j, k] = quaternion(state, at);
+            put(state, at, frame.turned * Quaternion::new(w, i, j, k));
+        }
+    }
+
+    /// Rates in inertial axes at `state` in inertial axes to those of the frames' quaternions.
+    pub fn rates_to_frame(&self, state: &[f64], rates: &mut [f64]) {
+        for frame in &self.frames {
+            let at = frame.body + ORIENTATION;
+            let carried = quaternion_rate(quaternion(state, at), frame.spin);
+            let [w, i, j, k] = [0, 1, 2, 3].map(|i| rates[at + i] - carried[i]);
+            put(rates, at, frame.turned.conjugate() * Quaternion::new(w, i, j, k));
+        }
+    }
+}
+
+fn quaternion(of: &[f64], at: usize) -> [f64; 4] {
+    [of[at], of[at + 1], of[at + 2], of[at + 3]]
+}
+
+fn put(to: &mut [f64], at: usize, q: Quaternion<f64>) {
+    to[at..at + 4].copy_from_slice(&[q.w, q.i, q.j, q.k]);
+}

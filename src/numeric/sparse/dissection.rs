@@ -1,0 +1,165 @@
+//! Order of elimination by nested dissection: a body is cut in two by as few nodes as will do, these
+//! come last, and each part is cut again (A. George, SIAM J. Numer. Anal. 10 (1973) 345).
+//!
+//! The cut is looked for about the middle of the part along a principal axis of its nodes' places,
+//! where a smallest separator is found exactly; see [`crate::numeric::sparse::separator`].
+
+use crate::kinematics::vec3::{Vec3, dot};
+use crate::numeric::sparse::graph::Graph;
+use crate::numeric::sparse::minimum_degree::minimum_degree;
+use crate::numeric::sparse::separator::{Cut, Side, smallest_cuts};
+use nalgebra::{Matrix3, SymmetricEigen};
+
+/// Parts of at most so many nodes are left to minimum degree.
+const LEAF: usize = 60;
+/// The part of the nodes on each side of the middle, along the axis, among which a cut is looked for.
+const BAND: f64 = 0.12;
+/// Axes are tried whose plain cut through the middle is at most so much larger than the smallest one.
+const WORTH_A_TRY: f64 = 1.25;
+
+/// Nodes in the order of elimination.
+pub fn nested_dissection(graph: &Graph, places: &[Vec3]) -> Vec<u32> {
+    let count = graph.nodes();
+    let mut work = Work {
+        graph,
+        places,
+        side: vec![Side::Outside; count],
+        index: vec![0; count],
+        order: Vec::with_capacity(count),
+    };
+    // Parts still to be ordered, the last one first; a separator waits below its two parts.
+    let mut waiting = vec![Part::Body((0..count as u32).collect())];
+    while let Some(part) = waiting.pop() {
+        match part {
+            Part::Separator(nodes) => work.order.extend(nodes),
+            Part::Body(nodes) if nodes.len() <= LEAF => work.leaf(nodes),
+            Part::Body(nodes) => match work.cut(&nodes) {
+                Some(cut) => {
+                    waiting.push(Part::Separator(cut.separator));
+                    waiting.push(Part::Body(cut.high));
+                    waiting.push(Part::Body(cut.low));
+                }
+                None => work.leaf(nodes),
+            },
+        }
+    }
+    work.order
+}
+
+enum Part {
+    Body(Vec<u32>),
+    Separator(Vec<u32>),
+}
+
+struct Work<'a> {
+    graph: &'a Graph,
+    places: &'a [Vec3],
+    side: Vec<Side>,
+    index: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl Work<'_> {
+    fn leaf(&mut self, nodes: Vec<u32>) {
+        let local = minimum_degree(&self.graph.permuted(&nodes));
+        self.order.extend(local.iter().map(|at| nodes[*at as usize]));
+    }
+
+    /// The best of some cuts; nothing where none leaves two parts.
+    fn cut(&mut self, nodes: &[u32]) -> Option<Cut> {
+        let mut best: Option<(f64, Cut)> = None;
+        let mut tries: Vec<(usize, Vec<u32>)> = principal_axes(self.places, nodes)
+            .iter()
+            .map(|axis| {
+                let sorted = sorted_along(self.places, nodes, *axis);
+                (self.plain_size(&sorted), sorted)
+            })
+            .collect();
+        tries.sort_by_key(|(size, _)| *size);
+        let limit = WORTH_A_TRY * tries[0].0 as f64;
+        for (_, sorted) in tries.iter().filter(|(size, _)| *size as f64 <= limit) {
+            for cut in self.cuts_about(sorted) {
+                let (low, high) = (cut.low.len() as f64, cut.high.len() as f64);
+                if low * high == 0.0 {
+                    continue;
+                }
+                // Work grows with the separator and with uneven parts.
+                let uneven = (low + high).powi(2) / (4.0 * low * high);
+                let price = cut.separator.len() as f64 * uneven;
+                if best.as_ref().is_none_or(|(least, _)| price < *least) {
+                    best = Some((price, cut));
+                }
+            }
+        }
+        for node in nodes {
+            self.side[*node as usize] = Side::Outside;
+        }
+        best.map(|(_, cut)| cut)
+    }
+
+    /// Nodes of the lower half that touch the upper one.
+    fn plain_size(&mut self, sorted: &[u32]) -> usize {
+        let (low, high) = sorted.split_at(sorted.len() / 2);
+        low.iter().for_each(|node| self.side[*node as usize] = Side::Low);
+        high.iter().for_each(|node| self.side[*node as usize] = Side::High);
+        let touches = |node: &&u32| {
+            self.graph.of(**node).iter().any(|o| self.side[*o as usize] == Side::High)
+        };
+        low.iter().filter(touches).count()
+    }
+
+    fn cuts_about(&mut self, sorted: &[u32]) -> [Cut; 2] {
+        let count = sorted.len();
+        let half = ((BAND * count as f64) as usize).max(1);
+        let (from, to) = (count / 2 - half, (count / 2 + half).min(count - 1));
+        for (at, node) in sorted.iter().enumerate() {
+            self.side[*node as usize] = match at {
+                at if at < from => Side::Low,
+                at if at < to => Side::Band,
+                _ => Side::High,
+            };
+        }
+        // The low side may touch the high one across the band: then those of the low side that do
+        // belong to the band.
+        let mut middle: Vec<u32> = sorted[from..to].to_vec();
+        for node in &sorted[..from] {
+            let across = |other: &u32| self.side[*other as usize] == Side::High;
+            if self.graph.of(*node).iter().any(across) {
+                self.side[*node as usize] = Side::Band;
+                middle.push(*node);
+            }
+        }
+        for (at, node) in (0u32..).zip(&middle) {
+            self.index[*node as usize] = at;
+        }
+        let mut cuts = smallest_cuts(self.graph, &self.side, &self.index, &middle);
+        for cut in &mut cuts {
+            cut.low.extend(sorted[..from].iter().filter(|n| self.side[**n as usize] == Side::Low));
+            cut.high.extend(&sorted[to..]);
+        }
+        cuts
+    }
+}
+
+/// Of the nodes' places about their mean, the longest extent first.
+fn principal_axes(places: &[Vec3], nodes: &[u32]) -> [Vec3; 3] {
+    let count = nodes.len() as f64;
+    let mut mean = [0.0; 3];
+    for node in nodes {
+        (0..3).for_each(|i| mean[i] += places[*node as usize][i] / count);
+    }
+    let mut moments = Matrix3::zeros();
+    for node in nodes {
+        let from = [0, 1, 2].map(|i: usize| places[*node as usize][i] - mean[i]);
+        moments += Matrix3::from_fn(|i, j| from[i] * from[j]);
+    }
+    let vectors = SymmetricEigen::new(moments).eigenvectors;
+    [0, 1, 2].map(|i| vectors.column(i).into_owned().into())
+}
+
+fn sorted_along(places: &[Vec3], nodes: &[u32], axis: Vec3) -> Vec<u32> {
+    let mut keyed: Vec<(f64, u32)> =
+        nodes.iter().map(|node| (dot(places[*node as usize], axis), *node)).collect();
+    keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    keyed.into_iter().map(|(_, node)| node).collect()
+}

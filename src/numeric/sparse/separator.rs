@@ -1,0 +1,282 @@
+//! The fewest nodes that part a graph, by Menger's theorem: as many as there are paths without a
+//! common node between its two sides (Dinic's method for maximum flow, every node carrying one).
+
+use crate::numeric::sparse::graph::Graph;
+use std::collections::VecDeque;
+
+/// Where a node of the part that is cut lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Not in the part at all.
+    Outside,
+    Low,
+    /// May be cut.
+    Band,
+    High,
+}
+
+const NOBODY: u32 = u32::MAX;
+/// The merged low and high sides as neighbours of a path.
+const LOW: u32 = u32::MAX - 1;
+const HIGH: u32 = u32::MAX - 2;
+
+/// Two smallest separators: the one next to the low side and the one next to the high side, and for
+/// each which nodes of the band then lie on the low side.
+pub struct Cut {
+    pub separator: Vec<u32>,
+    pub low: Vec<u32>,
+    pub high: Vec<u32>,
+}
+
+/// The flow of one search; arrays over the nodes of the band, which `index` numbers.
+struct Flow<'a> {
+    graph: &'a Graph,
+    side: &'a [Side],
+    index: &'a [u32],
+    band: &'a [u32],
+    /// The node before and after on the path through a node; [`NOBODY`] where there is no path.
+    before: Vec<u32>,
+    after: Vec<u32>,
+    touches_low: Vec<bool>,
+    touches_high: Vec<bool>,
+    /// Distance from the low side of entrance (even) and exit (odd) of each node.
+    level: Vec<u32>,
+    /// Which neighbour an exit tries next.
+    tried: Vec<u32>,
+}
+
+/// Smallest cuts of `band`, whose nodes have the numbers `index`, between low and high side: next to
+/// the low one and next to the high one.
+pub fn smallest_cuts(graph: &Graph, side: &[Side], index: &[u32], band: &[u32]) -> [Cut; 2] {
+    let touches = |of: Side| -> Vec<bool> {
+        let at = |node: &u32| graph.of(*node).iter().any(|other| side[*other as usize] == of);
+        band.iter().map(at).collect()
+    };
+    let mut flow = Flow {
+        graph,
+        side,
+        index,
+        band,
+        before: vec![NOBODY; band.len()],
+        after: vec![NOBODY; band.len()],
+        touches_low: touches(Side::Low),
+        touches_high: touches(Side::High),
+        level: Vec::new(),
+        tried: Vec::new(),
+    };
+    while flow.levels() {
+        flow.tried = vec![0; 2 * band.len()];
+        for start in 0..band.len() as u32 {
+            if flow.touches_low[start as usize] && flow.before[start as usize] != LOW {
+                flow.augment(start);
+            }
+        }
+    }
+    // After the last search `level` marks what the low side still reaches.
+    let reached = std::mem::take(&mut flow.level);
+    let near_low = flow.cut(
+        |entrance, exit| match (entrance, exit) {
+            (true, true) => Side::Low,
+            (true, false) => Side::Band,
+            _ => Side::High,
+        },
+        &reached,
+    );
+    let reaching = flow.reaching_high();
+    let near_high = flow.cut(
+        |entrance, exit| match (entrance, exit) {
+            (true, true) => Side::High,
+            (false, true) => Side::Band,
+            _ => Side::Low,
+        },
+        &reaching,
+    );
+    [near_low, near_high]
+}
+
+impl Flow<'_> {
+    /// Neighbours of a node within the band.
+    fn neighbour(&self, at: u32, which: usize) -> Option<u32> {
+        self.graph.of(self.band[at as usize]).get(which).map(|node| {
+            match self.side[*node as usize] {
+                Side::Band => self.index[*node as usize],
+                _ => NOBODY,
+            }
+        })
+    }
+
+    fn cut(&self, place: impl Fn(bool, bool) -> Side, level: &[u32]) -> Cut {
+        let mut cut = Cut { separator: Vec::new(), low: Vec::new(), high: Vec::new() };
+        for (at, node) in self.band.iter().enumerate() {
+            let marked = |end: usize| level[2 * at + end] != u32::MAX;
+            match place(marked(0), marked(1)) {
+                Side::Low => cut.low.push(*node),
+                Side::High => cut.high.push(*node),
+                _ => cut.separator.push(*node),
+            }
+        }
+        cut
+    }
+
+    /// Breadth first from the low side; whether the high side is reached.
+    fn levels(&mut self) -> bool {
+        self.level = vec![u32::MAX; 2 * self.band.len()];
+        let mut queue = VecDeque::new();
+        for at in 0..self.band.len() {
+            // Where a path already comes from there too: any number may.
+            if self.touches_low[at] {
+                self.level[2 * at] = 0;
+                queue.push_back(2 * at as u32);
+            }
+        }
+        let mut reached = false;
+        while let Some(end) = queue.pop_front() {
+            let (at, exit) = (end / 2, end % 2 == 1);
+            let next = self.level[end as usize] + 1;
+            let mut visit = |level: &mut Vec<u32>, end: u32| {
+                if level[end as usize] == u32::MAX {
+                    level[end as usize] = next;
+                    queue.push_back(end);
+                }
+            };
+            let (before, after) = (self.before[at as usize], self.after[at as usize]);
+            if exit {
+                reached |= self.touches_high[at as usize] && after != HIGH;
+                if before != NOBODY {
+                    visit(&mut self.level, 2 * at);
+                }
+                for node in self.graph.of(self.band[at as usize]) {
+                    if self.side[*node as usize] == Side::Band {
+                        visit(&mut self.level, 2 * self.index[*node as usize]);
+                    }
+                }
+            } else if before == NOBODY {
+                visit(&mut self.level, 2 * at + 1);
+            } else if before != LOW {
+                visit(&mut self.level, 2 * before + 1);
+            }
+        }
+        reached
+    }
+
+    /// Depth first along rising levels from the entrance of `start`; puts a path in place.
+    fn augment(&mut self, start: u32) -> bool {
+        // The way so far, as ends: entrances even, exits odd.
+        let mut way = vec![2 * start];
+        while let Some(&end) = way.last() {
+            let (at, exit) = ((end / 2) as usize, end % 2 == 1);
+            let rising =
+                |flow: &Self, to: u32| flow.level[to as usize] == flow.level[end as usize] + 1;
+            let mut onward = None;
+            if exit {
+                if self.touches_high[at] && self.after[at] != HIGH {
+                    self.lay(&way);
+                    return true;
+                }
+                loop {
+                    let which = self.tried[end as usize];
+                    self.tried[end as usize] += 1;
+                    // Its own entrance first, where a path may be taken back.
+                    let to = if which == 0 {
+                        (self.before[at] != NOBODY).then_some(2 * at as u32)
+                    } else {
+                        match self.neighbour(at as u32, which as usize - 1) {
+                            None => break,
+                            Some(NOBODY) => None,
+                            Some(other) if other == self.after[at] => None,
+                            Some(other) => Some(2 * other),
+                        }
+                    };
+                    if let Some(to) = to.filter(|to| rising(self, *to)) {
+                        onward = Some(to);
+                        break;
+                    }
+                }
+            } else if self.tried[end as usize] == 0 {
+                self.tried[end as usize] = 1;
+                let to = match self.before[at] {
+                    NOBODY => Some(2 * at as u32 + 1),
+                    LOW => None,
+                    before => Some(2 * before + 1),
+                };
+                onward = to.filter(|to| rising(self, *to));
+            }
+            match onward {
+                Some(to) => way.push(to),
+                None => {
+                    way.pop();
+                }
+            }
+        }
+        false
+    }
+
+    /// Sends one more path along a way from the low side to an exit next to the high side.
+    fn lay(&mut self, way: &[u32]) {
+        // Links that the way takes back go first, in the order that leaves new ones standing.
+        let mut add = vec![(LOW, way[0] / 2)];
+        let mut drop = Vec::new();
+        for pair in way.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            match (from % 2, to % 2) {
+                (1, 0) if from / 2 != to / 2 => add.push((from / 2, to / 2)),
+                (0, 1) if from / 2 != to / 2 => drop.push((to / 2, from / 2)),
+                _ => {}
+            }
+        }
+        add.push((way[way.len() - 1] / 2, HIGH));
+        for (from, to) in drop {
+            self.after[from as usize] = NOBODY;
+            self.before[to as usize] = NOBODY;
+        }
+        for (from, to) in add {
+            if from != LOW {
+                self.after[from as usize] = to;
+            }
+            if to != HIGH {
+                self.before[to as usize] = from;
+            }
+        }
+    }
+
+    /// Ends from which the high side can still be reached, marked by 0.
+    fn reaching_high(&self) -> Vec<u32> {
+        let mut marks = vec![u32::MAX; 2 * self.band.len()];
+        let mut stack = Vec::new();
+        for at in 0..self.band.len() {
+            if self.touches_high[at] {
+                marks[2 * at + 1] = 0;
+                stack.push(2 * at as u32 + 1);
+            }
+        }
+        while let Some(end) = stack.pop() {
+            let (at, exit) = (end / 2, end % 2 == 1);
+            let mut visit = |end: u32| {
+                if marks[end as usize] == u32::MAX {
+                    marks[end as usize] = 0;
+                    stack.push(end);
+                }
+            };
+            let (before, after) = (self.before[at as usize], self.after[at as usize]);
+            if exit {
+                // Reached from its own entrance, or by taking back the link to the next node.
+                if before == NOBODY {
+                    visit(2 * at);
+                }
+                if after != NOBODY && after != HIGH {
+                    visit(2 * after);
+                }
+            } else {
+                if before != NOBODY {
+                    visit(2 * at + 1);
+                }
+                for node in self.graph.of(self.band[at as usize]) {
+                    if self.side[*node as usize] == Side::Band {
+                        visit(2 * self.index[*node as usize] + 1);
+                    }
+                }
+            }
+        }
+        marks
+    }
+}

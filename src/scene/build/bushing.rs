@@ -1,0 +1,225 @@
+//! From bushings of a scene that are solved in elements to these elements between their bodies.
+
+use crate::assembly::lists::Assembly;
+use crate::assembly::plan::rubber::Bonded;
+use crate::members::connection::Connection;
+use crate::mesh::generate::{BushingMesh, Part, bushing};
+use crate::mesh::{Elements, TetMesh};
+use crate::motion::bonded_bushing::{BondedElements, BondedPart, Sleeve, add_mass};
+use crate::numeric::profile::Profile;
+use crate::scene::build::assembly::{
+    AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Spring, SpringAt,
+};
+use crate::solids::model::Prescribed;
+use crate::solids::rubber::error::RubberError;
+use crate::solids::rubber::explicit::RubberBody;
+use crate::solids::rubber::model::{RubberModel, RubberProblem};
+use crate::solids::rubber::tet_forces::MeanStress;
+use thiserror::Error;
+
+/// The elements of a bushing, and what it is bonded to.
+#[derive(Clone, Debug)]
+pub struct BushingElements {
+    /// Of the spring.
+    pub name: String,
+    /// Ten-node elements with their mass, but for that of the nodes that bodies carry.
+    pub model: RubberModel,
+    pub solved: Solved,
+    sleeves: [Sleeve; 2],
+    spring: Connection,
+    window_phase: f64,
+}
+
+/// How the elements of a bushing are stepped.
+#[derive(Clone, Debug)]
+pub enum Solved {
+    /// Four-node elements of the same corners, by this part of the longest stable step.
+    Explicit { body: Box<RubberBody>, fraction: f64 },
+    /// By at most so many seconds.
+    Implicit { step: Option<f64> },
+}
+
+/// What bushings in elements cannot be made of.
+#[derive(Debug, Error)]
+#[error("the bushing of spring {name}: {reason}")]
+pub struct BushingError {
+    pub name: String,
+    pub reason: String,
+}
+
+/// Takes springs that are bushings in elements out of an assembly of the scene and makes these; the bodies of their
+/// sleeves get the mass of the nodes there.
+///
+/// # Errors
+/// Sizes and rubber from which there is no mesh or material.
+pub fn take_bushings(
+    scene: &AssemblyScene,
+    assembly: &mut Assembly,
+) -> Result<Vec<BushingElements>, BushingError> {
+    let mut found = Vec::new();
+    let mut kept = Vec::with_capacity(assembly.connections.len());
+    let connections = std::mem::take(&mut assembly.connections);
+    for connection in connections {
+        let spring = scene.springs.iter().find(|of| connection.label.as_ref() == Some(&of.name));
+        let in_elements = spring.and_then(|spring| {
+            let of = spring.bushing.as_deref()?;
+            Some((spring, of, of.elements?))
+        });
+        match in_elements {
+            None => kept.push(connection),
+            Some((spring, of, elements)) => {
+                let made = made(scene, spring, (of, elements), connection);
+                let name = spring.name.clone();
+                let made = made.map_err(|reason| BushingError { name, reason })?;
+                for sleeve in &made.sleeves {
+                    add_mass(assembly, sleeve, &made.all_masses(elements.density));
+                }
+                found.push(made);
+            }
+        }
+    }
+    assembly.connections = kept;
+    Ok(found)
+}
+
+/// The whole of a bushing whose cells are given for a quarter.
+fn whole(of: &BushingOfSpring) -> BushingMesh {
+    let BushingMesh { around, radial, axial, grading, .. } = of.mesh;
+    BushingMesh { around: 2 * around, radial, axial: 2 * axial, grading, part: Part::Whole }
+}
+
+fn made(
+    scene: &AssemblyScene,
+    spring: &Spring,
+    (of, elements): (&BushingOfSpring, BushingInElements),
+    connection: Connection,
+) -> Result<BushingElements, String> {
+    let solid = bushing(&of.body, &whole(of)).map_err(|error| error.to_string())?;
+    let four = solid.mesh.clone();
+    let ten = solid.quadratic().map_err(|error| error.to_string())?.mesh;
+    // The ground has the outer sleeve; else the first body has it.
+    let outer = usize::from(spring.ends[1].at == SpringAt::Ground);
+    let middle = scene.place(spring.ends[outer]);
+    let sleeve = |end: usize, set: &str| {
+        let at = spring.ends[end];
+        let nominal = [scene.place(at) - at.along, 0.0, 0.0];
+        let nodes = ten.node_sets.get(set).cloned().unwrap_or_default();
+        let arm = |node: &u32| {
+            let [x, y, z] = ten.nodes[*node as usize];
+            [x + middle - nominal[0], y, z]
+        };
+        let arms = nodes.iter().map(arm).collect();
+        Sleeve { body: connection.ends[end].body, nodes, arms, nominal }
+    };
+    let mut sleeves = [sleeve(outer, "outer"), sleeve(1 - outer, "inner")];
+    let carried = carried(&ten, "outer").chain(carried(&ten, "inner")).collect();
+    let model = ten_nodes(&ten, of, carried).map_err(|error| error.to_string())?;
+    let mut model = model.with_inertia(elements.density);
+    for node in sleeves.iter().flat_map(|sleeve| &sleeve.nodes) {
+        model.mass[*node as usize] = 0.0;
+    }
+    let solved = match elements.stepping {
+        BushingStepping::Implicit { step } => Solved::Implicit { step },
+        BushingStepping::Explicit { fraction } => {
+            // Four-node elements have corners alone.
+            let corners = four.nodes.len() as u32;
+            for sleeve in &mut sleeves {
+                let own = sleeve.nodes.iter().zip(&sleeve.arms);
+                (sleeve.nodes, sleeve.arms) = own.filter(|(node, _)| **node < corners).unzip();
+            }
+            Solved::Explicit { body: Box::new(four_nodes(&four, of, elements.density)), fraction }
+        }
+    };
+    let (name, spring) = (spring.name.clone(), connection);
+    let window_phase = elements.window_phase;
+    Ok(BushingElements { name, model, solved, sleeves, spring, window_phase })
+}
+
+/// Every component of the nodes of a sleeve; bodies say where they are.
+fn carried<'m>(mesh: &'m TetMesh, set: &str) -> impl Iterator<Item = Prescribed> + use<'m> {
+    let nodes = mesh.node_sets.get(set).into_iter().flatten();
+    nodes.flat_map(|node| {
+        [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO })
+    })
+}
+
+fn four_nodes(mesh: &TetMesh, of: &BushingOfSpring, density: f64) -> RubberBody {
+    RubberBody {
+        nodes: mesh.nodes.clone(),
+        elements: match &mesh.elements {
+            Elements::Linear(list) => list.clone(),
+            Elements::Quadratic(_) => Vec::new(),
+        },
+        material: of.material.clone(),
+        density,
+        mean_stress: MeanStress::AroundNodes,
+        mass_scale: 1.0,
+        prescribed: carried(mesh, "outer").chain(carried(mesh, "inner")).collect(),
+        loads: Vec::new(),
+        gravity: [0.0; 3],
+    }
+}
+
+fn ten_nodes(
+    mesh: &TetMesh,
+    of: &BushingOfSpring,
+    prescribed: Vec<Prescribed>,
+) -> Result<RubberModel, RubberError> {
+    let elements = match &mesh.elements {
+        Elements::Quadratic(list) => list.clone(),
+        Elements::Linear(_) => return Err(RubberError::FourNodes),
+    };
+    let (nodes, material) = (mesh.nodes.clone(), of.material.clone());
+    RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads: Vec::new() })
+}
+
+impl BushingElements {
+    /// As it takes part in a run.
+    pub fn part(&self) -> BondedPart<'_> {
+        let elements = match &self.solved {
+            Solved::Explicit { body, fraction } => {
+                BondedElements::Explicit { body, fraction: *fraction }
+            }
+            Solved::Implicit { step } => {
+                BondedElements::Implicit { model: &self.model, step: *step }
+            }
+        };
+        let (name, sleeves) = (self.name.clone(), self.sleeves.clone());
+        let (spring, window_phase) = (self.spring.clone(), self.window_phase);
+        BondedPart { name, sleeves, spring, elements, window_phase }
+    }
+
+    /// The same elements in implicit steps of at most so many seconds: what explicit steps are held against.
+    ///
+    /// # Errors
+    /// As [`RubberBody::implicit`].
+    pub fn in_implicit_steps(&self, step: Option<f64>) -> Result<BushingElements, RubberError> {
+        let mut same = BushingElements { solved: Solved::Implicit { step }, ..self.clone() };
+        if let Solved::Explicit { body, .. } = &self.solved {
+            same.model = body.implicit()?;
+            same.model.mass = body.model()?.mass;
+            for node in same.sleeves.iter().flat_map(|sleeve| &sleeve.nodes) {
+                same.model.mass[*node as usize] = 0.0;
+            }
+        }
+        Ok(same)
+    }
+
+    /// As a plan has it, the `index`-th solid of a run.
+    pub fn planned(&self, index: usize) -> Bonded<'_> {
+        let problem = &self.model.problem;
+        let (name, terms) = (self.name.as_str(), problem.material.maxwell.len());
+        let is_explicit = matches!(self.solved, Solved::Explicit { .. });
+        Bonded { name, index, is_explicit, elements: problem.elements.len(), terms }
+    }
+
+    /// kg, of the nodes that its sleeves have, whoever carries them.
+    fn all_masses(&self, density: f64) -> Vec<f64> {
+        match &self.solved {
+            Solved::Explicit { body, .. } => {
+                body.model().map(|model| model.mass).unwrap_or_default()
+            }
+            Solved::Implicit { .. } => self.model.clone().with_inertia(density).mass,
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! From a bearing in a housing and the housing's mesh to what the solver takes, and what drives it.
+
+use crate::ch2_housing::bore_contact::{ContactNode, Frame, Penalty, contact_nodes};
+use crate::kinematics::Pose;
+use crate::mesh::cylinder_fit::fit_cylinder;
+use crate::numeric::profile::Profile;
+use crate::scene::build::bore_shape::{
+    BorePlace, Flat, LARGEST_OUT_OF_ROUND, MiddleNodes, ROUND, flat, middle_nodes,
+};
+use crate::scene::build::solid::{SolidSetup, setup as solid_setup};
+use crate::scene::build::solid_mesh::BuiltMesh;
+use crate::scene::housing_error::{HousingSetupError, Lies, SHARES};
+use crate::scene::resolve::housing_scene::{FitSize, HousedScene};
+use crate::scene::resolve::solid_scene::{LoadKind, SetLoad};
+use crate::solids::bore_equilibrium::Fit;
+use crate::solids::condensation::{Reach, is_under};
+use crate::solids::model::SolidModel;
+use nalgebra::Vector3;
+use std::collections::BTreeSet;
+
+/// Part of the race's radius by which the bore may differ from it, and be out of centre.
+const FAR_OFF: f64 = 0.05;
+/// Part of an interference below which out-of-roundness changes pressures by no more than this part.
+const SMALL: f64 = 0.01;
+
+/// A housing ready for its bearing.
+#[derive(Clone, Debug)]
+pub struct HousingSetup {
+    pub solid: SolidSetup,
+    pub model: SolidModel,
+    /// Nodes of the bore that carry a part of its surface.
+    pub nodes: Vec<ContactNode>,
+    /// Of the cylinder that lies nearest to those under the race, m.
+    pub bore_radius: f64,
+    /// Largest distance of those from it, m.
+    pub out_of_round: f64,
+    /// Distance of its axis from the race's centre, m.
+    pub off_centre: f64,
+    /// What the bore's own shape does to the results, where that is worth a word.
+    pub caution: Option<String>,
+    /// What is no error and perhaps not meant.
+    pub notes: Vec<String>,
+    /// Radial, m; negative is clearance.
+    pub interference: f64,
+    /// Of the outer race, m.
+    pub width: f64,
+    /// Outer race where its motion is measured from.
+    pub nominal: Pose,
+}
+
+/// # Errors
+/// A set that is not there, a bore that is not about the race, a model that cannot be set up.
+pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, HousingSetupError> {
+    let mesh = &built.mesh;
+    let solid = solid_setup(&scene.solid, built)?;
+    let bore = scene.housing.bore.clone();
+    let faces = mesh.surface_sets.get(&bore).ok_or_else(|| HousingSetupError::NoBore {
+        bore: bore.clone(),
+        known: mesh.surface_sets.keys().cloned().collect(),
+    })?;
+    if let Some(Flat { area, normal }) = flat(mesh, faces) {
+        let known = mesh.surface_sets.keys().cloned().collect();
+        return Err(HousingSetupError::FlatBore { bore, faces: faces.len(), area, normal, known });
+    }
+    let nodes = contact_nodes(mesh, faces);
+    let place = BorePlace::of(scene);
+    let nominal = place.nominal;
+    let frame = Frame::new(&nominal);
+    let seen: Vec<[f64; 3]> = nodes.iter().map(|node| frame.seen(node.place)).collect();
+    let ends = seen.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| {
+        [low.min(place[0]), high.max(place[0])]
+    });
+    let width = scene.housing.width.unwrap_or(ends[1] - ends[0]);
+    let is_under = |place: &[f64; 3]| is_under(place[0], width);
+    let distance = |[_, y, z]: &[f64; 3]| (y * y + z * z).sqrt();
+    let distances: Vec<f64> = seen.iter().filter(|at| is_under(at)).map(distance).collect();
+    if distances.is_empty() {
+        let centre = nominal.position.x;
+        let (count, lies) = (nodes.len(), Lies::of(&seen));
+        return Err(HousingSetupError::BesideTheRace { count, width, centre, lies });
+    }
+    let corners = place.corner_cylinder(mesh, faces);
+    let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+    let farthest = distances.iter().copied().fold(0.0, f64::max);
+    let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+    // Written as it is so that a place that is not a number is refused as well.
+    let round = farthest - nearest <= FAR_OFF * mean;
+    if !round {
+        let lies = Lies::of(&seen);
+        return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
+    }
+    // Straight edges would make a coarse bore look far too small.
+    let size = corners.map_or(mean, |corners| corners.radius);
+    let sizes = &scene.bearing.dimensions;
+    let given = match scene.housing.fit {
+        FitSize::OuterRadius(radius) => Some(radius),
+        FitSize::Interference(_) => sizes.outer_radius,
+    };
+    let groove = sizes.outer_race.radius;
+    let race = given.unwrap_or(1.1 * groove);
+    let near = match given {
+        Some(given) => (size - given).abs() <= FAR_OFF * given,
+        // Any wall behind the groove.
+        None => size > groove && size < 2.0 * groove,
+    };
+    if !near {
+        return Err(HousingSetupError::FarFromTheRace { bore, radius: size, race });
+    }
+    if let Some(corners) = corners {
+        let middles = middle_nodes(mesh, faces, &corners);
+        if middles.straight() {
+            let (radius, MiddleNodes { inside, sagitta, missing, .. }) = (corners.radius, middles);
+            return Err(HousingSetupError::StraightBore { bore, radius, inside, sagitta, missing });
+        }
+    }
+    let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at));
+    let under: Vec<Vector3<f64>> = under.map(|(node, _)| Vector3::from(node.place)).collect();
+    let Some(cylinder) = fit_cylinder(&under, place.axis()) else {
+        let lies = Lies::of(&seen);
+        return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
+    };
+    let radius = cylinder.radius;
+    let off = under.iter().map(|at| cylinder.outside(*at).abs()).fold(0.0, f64::max);
+    let limit = LARGEST_OUT_OF_ROUND * radius;
+    let round = off <= limit;
+    if !round {
+        return Err(HousingSetupError::OutOfRound { bore, radius, off, limit });
+    }
+    let off_centre = cylinder.outside(nominal.position) + radius;
+    let share = share_of_seat(&nodes, &seen, width, ends[1] - ends[0]);
+    let stands_for_it = SHARES.contains(&share);
+    if !stands_for_it {
+        let beside = overhang(width, ends);
+        return Err(HousingSetupError::CoarseSeat { width, share, beside });
+    }
+    if let Some(at) = one_row(&nodes, &seen, width) {
+        return Err(HousingSetupError::OneRow { count: distances.len(), width, at });
+    }
+    let interference = match scene.housing.fit {
+        FitSize::Interference(interference) => interference,
+        FitSize::OuterRadius(race) => race - radius,
+    };
+    let limit = 0.01 * radius;
+    let fits = interference <= limit;
+    if !fits {
+        return Err(HousingSetupError::FitTooLarge { interference, limit });
+    }
+    let mut notes = Vec::new();
+    notes.extend(overhang(width, ends));
+    notes.extend(beside_the_axis(off_centre, interference));
+    let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at)).map(|(node, _)| node.node);
+    notes.extend(held_nodes(&bore, under.collect(), &solid)?);
+    notes.extend(rigid_rings(scene, radius, interference));
+    let model = SolidModel::labelled(solid.problem.clone(), solid.labels.clone())?;
+    Ok(HousingSetup {
+        solid,
+        model,
+        nodes,
+        bore_radius: radius,
+        out_of_round: off,
+        off_centre,
+        caution: caution(off, interference, scene.housing.penalty),
+        notes,
+        interference,
+        width,
+        nominal,
+    })
+}
+
+/// A race that is wider than the seat under it, which lies between these places along its axis, m.
+fn overhang(width: f64, [low, high]: [f64; 2]) -> Option<String> {
+    let beside = (0.5 * width - high).max(0.0) + (0.5 * width + low).max(0.0);
+    // A thousandth of the width is what meshes and drawings round.
+    (beside > 1e-3 * width).then(|| {
+        format!(
+            "of the outer race's {:.4} mm of width {:.4} mm lie beside the bore, which goes from {:.4} to {:.4} \
+             mm along the axis from the race's centre: they bear on nothing, and pressure is high at the \
+             bore's edge. If that is not meant, check housing.width and outer_race.x",
+            1e3 * width,
+            1e3 * beside,
+            1e3 * low,
+            1e3 * high
+        )
+    })
+}
+
+/// A bore whose axis lies beside the race's centre by more than its fit, m.
+fn beside_the_axis(off: f64, interference: f64) -> Option<String> {
+    /// What drawings and meshes round.
+    const ROUNDED: f64 = 1e-6;
+    (off > interference.abs() + ROUNDED).then(|| {
+        format!(
+            "the bore's axis lies {:.4} um beside the race's centre, more than the fit: an explicit run that begins undeformed has the \
+             race so deep in the wall. If that is not meant, check solid.mesh.origin",
+            1e6 * off
+        )
+    })
+}
+
+/// Nodes of the bore that a support holds across the axis.
+fn held_nodes(
+    bore: &str,
+    under: BTreeSet<u32>,
+    solid: &SolidSetup,
+) -> Result<Option<String>, HousingSetupError> {
+    let across = solid.problem.prescribed.iter().filter(|held| held.axis > 0);
+    let held: BTreeSet<u32> =
+        across.map(|held| held.node).filter(|node| under.contains(node)).collect();
+    let count = under.len();
+    if held.len() == count {
+        return Err(HousingSetupError::HeldBore { bore: bore.to_string(), count });
+    }
+    Ok((!held.is_empty()).then(|| {
+        format!(
+            "{} of {count} nodes of the bore under the race are held by [[solid.fixed]] and do not give way: \
+             they take more of the load than a bore's would",
+            held.len()
+        )
+    }))
+}
+
+/// Rings are rigid: what that does to a fit, beside what a ring of its thickness would do.
+fn rigid_rings(scene: &HousedScene, radius: f64, interference: f64) -> Option<String> {
+    // Below this no fit is asked for: rounding of a given outer radius.
+    if interference <= 1e-9 * radius {
+        return None;
+    }
+    let thickness = radius - scene.bearing.dimensions.outer_race.radius;
+    let mean = radius - 0.5 * thickness;
+    // A thin ring under outer pressure p becomes smaller by p r²/(E t).
+    let alone =
+        scene.bearing.outer_material.youngs_modulus * thickness * interference / (mean * radius);
+    let ring = if thickness > 0.0 {
+        format!(
+            "; a thin ring as thick as from groove to seat, {:.3} mm, would give way by all of the fit under \
+             {:.3} MPa, and the parts share it by their stiffness",
+            1e3 * thickness,
+            1e-6 * alone
+        )
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "the races are rigid, so that the housing takes all of the fit of {:.3} um, and the bearing's clearance \
+         stays: pressure and stress of the fit are upper bounds{ring}",
+        1e6 * interference
+    ))
+}
+
+/// Of a bore so far (m) off its cylinder, where that is not small beside an interference or, under
+/// any fit, beside how far the race sinks into its seat.
+fn caution(off: f64, interference: f64, penalty: Penalty) -> Option<String> {
+    if off <= ROUND.max(SMALL * interference) {
+        return None;
+    }
+    let load = match penalty {
+        Penalty::PerArea(stiffness) => format!("{:.3} MPa", 1e-6 * stiffness * off),
+        Penalty::PerNode(stiffness) => format!("{:.3} N a node", stiffness * off),
+    };
+    Some(format!(
+        "the bore is {:.4} um out of round at a fit of {:+.4} um: nodes that stand out touch first, with \
+         up to {load} more than on a round bore; which nodes touch, the peak pressure and stresses at the \
+         bore are those of this mesh's shape, and the race's place is uncertain by about as much. If the \
+         shape is not meant, write the nodes' coordinates with more digits",
+        1e6 * off,
+        1e6 * interference
+    ))
+}
+
+/// Where along the axis the nodes under a race of `width` (m) lie, m, if that is in one place.
+///
+/// They resist a tilt by the second moment of what they carry; spread evenly they lie 0.29 widths from their
+/// middle, in two rows as close as a fifth of the width 0.1.
+fn one_row(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64) -> Option<f64> {
+    const CLOSEST: f64 = 0.1;
+    let under = || nodes.iter().zip(seen).filter(|(_, place)| is_under(place[0], width));
+    let area: f64 = under().map(|(node, _)| node.area).sum();
+    let middle = under().map(|(node, at)| node.area * at[0]).sum::<f64>() / area;
+    let spread = under().map(|(node, at)| node.area * (at[0] - middle) * (at[0] - middle));
+    let spread = (spread.sum::<f64>() / area).sqrt();
+    // Not `<`: a place that is not a number is no row.
+    (spread <= CLOSEST * width).then_some(middle)
+}
+
+/// Area that the nodes under a race of `width` carry, over the part of the bore (of length `length`, m) that
+/// it covers.
+fn share_of_seat(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64, length: f64) -> f64 {
+    let under = |place: &[f64; 3]| is_under(place[0], width);
+    let all: f64 = nodes.iter().map(|node| node.area).sum();
+    let carried: f64 =
+        nodes.iter().zip(seen).filter(|(_, place)| under(place)).map(|(node, _)| node.area).sum();
+    carried / (all * (width / length).min(1.0))
+}
+
+impl HousingSetup {
+    /// Radius of the outer race over time, m: an interference grows in.
+    pub fn radius(&self, scene: &HousedScene) -> Profile {
+        let grown = self.bore_radius + self.interference;
+        match scene.housing.fit_ramp {
+            Some(duration) if self.interference > 0.0 => {
+                Profile::SmoothRamp { from: self.bore_radius, to: grown, start: 0.0, duration }
+            }
+            _ => Profile::Constant(grown),
+        }
+    }
+
+    /// Nodes a condensed housing keeps: all under the race.
+    pub fn reach(&self) -> Reach {
+        let radius = self.bore_radius + self.interference.max(0.0);
+        Reach { nominal: self.nominal, radius, width: self.width, travel: None }
+    }
+
+    /// The race as fully grown into its fit.
+    pub fn fit(&self, scene: &HousedScene) -> Fit {
+        Fit { radius: self.bore_radius + self.interference, axial: scene.housing.axial }
+    }
+}
+
+/// What a condensed housing cannot have.
+///
+/// # Errors
+/// [`HousingSetupError::VaryingLoad`], [`HousingSetupError::MovedSupport`].
+pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
+    let constant = |profile: &Profile| matches!(profile, Profile::Constant(_));
+    let varies = |load: &SetLoad| match &load.kind {
+        LoadKind::Pressure(profile) => !constant(profile),
+        LoadKind::Force(axes) => !axes.iter().flatten().all(constant),
+    };
+    if let Some(index) = scene.solid.loads.iter().position(varies) {
+        return Err(HousingSetupError::VaryingLoad { index });
+    }
+    check_supports(scene)
+}
+
+/// What a linear housing that is taken as its bore sees it cannot have.
+///
+/// # Errors
+/// [`HousingSetupError::MovedSupport`].
+pub fn check_supports(scene: &HousedScene) -> Result<(), HousingSetupError> {
+    for (index, held) in scene.solid.held.iter().enumerate() {
+        for (axis, motion) in ["x", "y", "z"].into_iter().zip(&held.motion) {
+            if motion.as_ref().is_some_and(|motion| !motion.is_zero()) {
+                return Err(HousingSetupError::MovedSupport { index, axis });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,18 @@
+//! From a resolved scene to the lists, problems and meshes that the solvers take.
+
+pub mod about;
+pub mod assembly;
+pub mod bore_shape;
+pub mod bushing;
+pub mod bushing_reach;
+pub mod deck_materials;
+pub mod excitations;
+pub mod housing;
+pub mod motion;
+pub mod rubber;
+pub mod sensors;
+pub mod shaft;
+pub mod solid;
+pub mod solid_mesh;
+pub mod statics;
+pub mod symmetry;

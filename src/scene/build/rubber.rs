@@ -1,0 +1,181 @@
+//! From a scene with a solid of rubber and its mesh to what the implicit steps take.
+
+use crate::elements::tet10::{shape_functions, stiffness_rule};
+use crate::mesh::{Elements, TetMesh};
+use crate::numeric::profile::Profile;
+use crate::scene::build::solid::{NamedNodes, Outside, SolidSetupError, Support, outside};
+use crate::scene::build::solid_mesh::BuiltMesh;
+use crate::scene::resolve::solid_scene::{Harmonic, Held, MeshSource, RubberScene, SolidScene};
+use crate::solids::labels::Labels;
+use crate::solids::model::{Load, Prescribed};
+use crate::solids::rubber::model::{RubberModel, RubberProblem};
+use std::collections::BTreeSet;
+
+/// A solid of rubber ready to be solved, and what is to be written of it.
+#[derive(Clone, Debug)]
+pub struct RubberSetup {
+    pub model: RubberModel,
+    pub labels: Labels,
+    /// kg/m³.
+    pub density: f64,
+    pub probes: Vec<NamedNodes>,
+    /// Supports; their reactions are written.
+    pub supports: Vec<Support>,
+    /// What is no error and perhaps not meant.
+    pub notes: Vec<String>,
+}
+
+/// # Errors
+/// As [`crate::scene::build::solid::setup`]; a mesh of four-node elements, a body that no model is made of.
+pub fn rubber_setup(
+    scene: &SolidScene,
+    rubber: &RubberScene,
+    built: &BuiltMesh,
+) -> Result<RubberSetup, SolidSetupError> {
+    let mesh = &built.mesh;
+    let Elements::Quadratic(elements) = mesh.elements.clone() else {
+        return Err(SolidSetupError::FourNodes);
+    };
+    let Outside { prescribed, supports, loads, probes, mut notes } = outside(scene, built)?;
+    if let Some(deck) = built.materials.first() {
+        notes
+            .push(format!("the scene's rubber is used, not the deck's material \"{}\"", deck.name));
+    }
+    notes.extend(sliding_sleeves(scene));
+    keeps_between_sleeves(scene)?;
+    let (nodes, material) = (mesh.nodes.clone(), rubber.material.clone());
+    let mut model =
+        RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads })?;
+    if scene.gravity != [0.0; 3] {
+        model.problem.loads.push(weight(&model, scene.density, scene.gravity));
+    }
+    if let Some(asked) = &rubber.harmonic {
+        moves_as_a_whole(scene, mesh, asked)?;
+    }
+    let labels = built.labels.clone();
+    Ok(RubberSetup { model, labels, density: scene.density, probes, supports, notes })
+}
+
+/// Sleeves of a generated bushing that are held along some axes and free along others, as nothing bonded is.
+fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
+    if !matches!(scene.mesh.source, MeshSource::Bushing(..)) {
+        return Vec::new();
+    }
+    let said = |set: &str| {
+        let own = || scene.held.iter().filter(|held| held.set == set);
+        let (held, free): (Vec<usize>, Vec<usize>) =
+            (0..3).partition(|axis| own().any(|held| held.motion[*axis].is_some()));
+        let names =
+            |of: &[usize]| of.iter().map(|i| ["x", "y", "z"][*i]).collect::<Vec<_>>().join(" and ");
+        let slides = !held.is_empty() && !free.is_empty();
+        slides.then(|| {
+            format!(
+                "the sleeve \"{set}\" is held along {} alone: its rubber slides along {}, where rubber that is bonded to a \
+                 sleeve is held along all three",
+                names(&held),
+                names(&free)
+            )
+        })
+    };
+    ["inner", "outer"].into_iter().filter_map(said).collect()
+}
+
+/// Instants between corners at which given motions are looked at.
+const LOOKS: usize = 200;
+
+/// The sleeves of a generated bushing never come so far across that its wall has no room left.
+fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
+    let MeshSource::Bushing(body, _) = &scene.mesh.source else { return Ok(()) };
+    let wall = body.thickness;
+    let end = scene.run.as_ref().map_or(0.0, |run| run.end);
+    let profiles = scene.held.iter().flat_map(|held| held.motion.iter().flatten());
+    let even = (0..=LOOKS).map(|look| end * look as f64 / LOOKS as f64);
+    let times = profiles.flat_map(Profile::corners).filter(|time| *time <= end).chain(even);
+    let moved = |set: &str, axis: usize, time: f64| {
+        let own = scene.held.iter().filter(|held| held.set == set);
+        own.filter_map(|held| held.motion[axis].as_ref()).map(|motion| motion.value(time)).next()
+    };
+    for time in times {
+        // About X.
+        let across = [1, 2].map(|axis| {
+            let [inner, outer] = ["inner", "outer"].map(|set| moved(set, axis, time));
+            inner.zip(outer).map_or(0.0, |(inner, outer)| inner - outer)
+        });
+        let far = libm::hypot(across[0], across[1]);
+        let fits = far < wall;
+        if !fits {
+            let axis = if across[0].abs() > across[1].abs() { 1 } else { 2 };
+            let mut held = (0..).zip(&scene.held);
+            let own = held.find(|(_, held)| held.set == "inner" && held.motion[axis].is_some());
+            let (index, axis) = (own.map_or(0, |(index, _)| index), ["x", "y", "z"][axis]);
+            return Err(SolidSetupError::ThroughSleeve { index, axis, across: far, wall, time });
+        }
+    }
+    Ok(())
+}
+
+/// A set that vibrates has no node that another set holds along the same axis: a quarter has no answer to motion
+/// across its planes of symmetry.
+fn moves_as_a_whole(
+    scene: &SolidScene,
+    mesh: &TetMesh,
+    asked: &Harmonic,
+) -> Result<(), SolidSetupError> {
+    let holds = |held: &&Held| held.motion[asked.axis].is_some();
+    if !scene.held.iter().filter(holds).any(|held| held.set == asked.set) {
+        // Said where its stiffness is asked for.
+        return Ok(());
+    }
+    let nodes = |set: &str| mesh.node_sets.get(set).map(Vec::as_slice).unwrap_or_default();
+    let own: BTreeSet<u32> = nodes(&asked.set).iter().copied().collect();
+    let shares = |held: &&Held| {
+        held.set != asked.set && nodes(&held.set).iter().any(|node| own.contains(node))
+    };
+    scene.held.iter().filter(holds).find(shares).map_or(Ok(()), |held| {
+        let (set, other) = (asked.set.clone(), held.set.clone());
+        Err(SolidSetupError::VibratesTwoWays { set, other, axis: ["x", "y", "z"][asked.axis] })
+    })
+}
+
+/// Weight of every element on its nodes.
+fn weight(model: &RubberModel, density: f64, gravity: [f64; 3]) -> Load {
+    let mut masses = vec![0.0; model.problem.nodes.len()];
+    for (nodes, tet) in model.problem.elements.iter().zip(&model.tets) {
+        for (at, point) in tet.points.iter().enumerate() {
+            for (node, share) in nodes.iter().zip(shape_functions(&stiffness_rule(at))) {
+                masses[*node as usize] += density * point.volume * share;
+            }
+        }
+    }
+    let forces = (0..).zip(masses).map(|(node, mass)| (node, gravity.map(|g| mass * g))).collect();
+    Load { forces, profile: Profile::Constant(1.0) }
+}
+
+/// The same body with one set moved by 1 m along an axis, all other supports at rest and no loads.
+///
+/// # Errors
+/// A set that the supports do not hold along that axis, or one against which nothing is held.
+pub fn vibrating(setup: &RubberSetup, asked: &Harmonic) -> Result<RubberModel, SolidSetupError> {
+    let known = || setup.supports.iter().map(|support| support.name.clone()).collect();
+    let support = setup.supports.iter().find(|support| support.name == asked.set);
+    let moved = support.map_or(&[][..], |support| support.components.as_slice());
+    let moves = |node: u32, axis: usize| axis == asked.axis && moved.contains(&(node, axis));
+    let mut model = setup.model.clone();
+    model.problem.loads.clear();
+    let mut any = false;
+    for Prescribed { node, axis, profile } in &mut model.problem.prescribed {
+        let is_moved = moves(*node, *axis);
+        any |= is_moved;
+        *profile = if is_moved { Profile::Constant(1.0) } else { Profile::ZERO };
+    }
+    let (set, axis) = (asked.set.clone(), ["x", "y", "z"][asked.axis]);
+    if !any {
+        return Err(SolidSetupError::NotHeld { set, axis, known: known() });
+    }
+    let mut others = setup.supports.iter().filter(|support| support.name != asked.set);
+    let holds = |support: &Support| support.components.iter().any(|(_, of)| *of == asked.axis);
+    if !others.any(holds) {
+        return Err(SolidSetupError::VibratesFreely { set, axis });
+    }
+    Ok(model)
+}

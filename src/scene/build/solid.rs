@@ -1,0 +1,467 @@
+//! From a scene and its mesh to what the solver takes: sets become nodes, loads become forces.
+
+use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::measure::{Share, tributary_areas};
+use crate::mesh::vector_area::vector_areas;
+use crate::mesh::{Face, TetMesh};
+use crate::numeric::profile::Profile;
+use crate::scene::build::about::About;
+use crate::scene::build::deck_materials::deck_materials;
+use crate::scene::build::solid_mesh::BuiltMesh;
+use crate::scene::resolve::rubber::FOUR_NODES_LOCK;
+use crate::scene::resolve::solid_scene::{Law, LoadKind, ProbeOf, SolidScene};
+use crate::solids::labels::Labels;
+use crate::solids::model::{Load, Prescribed, SolidProblem};
+use crate::solids::rubber::error::RubberError;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+use thiserror::Error;
+
+/// What of a scene does not fit its mesh; `index` counts the tables of a list from 0.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SolidSetupError {
+    #[error(transparent)]
+    Material(#[from] ElasticError),
+    #[error(transparent)]
+    Rubber(#[from] RubberError),
+    #[error("solid.material.law: this needs a linear elastic solid")]
+    OtherLaw,
+    #[error(
+        "solid.mesh.file: the mesh has four-node elements; {FOUR_NODES_LOCK}. Write `order = 2` in [solid.mesh]"
+    )]
+    FourNodes,
+    #[error(
+        "solid.harmonic.set: \"{set}\" is not held along {axis}, and only what is held or moved has a \
+         stiffness; [[solid.fixed]] has: {}",
+        list(known)
+    )]
+    NotHeld { set: String, axis: &'static str, known: Vec<String> },
+    #[error(
+        "solid.harmonic.axis: sets \"{set}\" and \"{other}\" hold nodes in common along {axis}, so that \"{set}\" cannot move \
+         along it as a whole. Hint: a plane of symmetry allows motion along itself alone; take the whole body"
+    )]
+    VibratesTwoWays { set: String, other: String, axis: &'static str },
+    #[error(
+        "solid.harmonic.axis: no set but \"{set}\" is held along {axis}, so that moving it meets no stiffness. Hint: hold \
+         another one, or ask along another axis"
+    )]
+    VibratesFreely { set: String, axis: &'static str },
+    #[error(
+        "solid.material: the deck has a material ({deck}), which is not taken from there, and the scene names no \
+         {}, so that steel's would be in {} place: {steel}. Write what you mean in [solid]: {write}",
+        missing.join(" and no "), if missing.len() == 1 { "its" } else { "their" }
+    )]
+    DeckMaterial { deck: String, missing: Vec<&'static str>, steel: String, write: String },
+    #[error("{part}.set: no set is called \"{set}\"; there are: {}", list(known))]
+    NoSuchSet { part: &'static str, index: usize, set: String, known: Vec<String> },
+    #[error("{part}.set: set \"{set}\" has no nodes")]
+    EmptySet { part: &'static str, index: usize, set: String },
+    #[error(
+        "solid.load.set: pressure needs a surface, and \"{set}\" is a set of nodes or elements; the \
+         surfaces are: {}",
+        list(known)
+    )]
+    NoSurface { index: usize, set: String, known: Vec<String> },
+    #[error(
+        "solid.fixed.{axis}: sets \"{first}\" and \"{second}\" move the same node ({}) along {axis} in \
+         different ways",
+        place(at)
+    )]
+    HeldTwice { index: usize, first: String, second: String, axis: &'static str, at: Vec3 },
+    #[error(
+        "solid.load.set: set \"{set}\" is held along {along} where it is loaded: the support takes all of the \
+         load, and the body none. Load another set, or leave that axis out of [[solid.fixed]]"
+    )]
+    LoadOnSupport { index: usize, set: String, along: String },
+    #[error(
+        "solid.probe.at: {:.4} mm from there is the nearest node ({}), farther than the longest edge of the \
+         mesh, {:.4} mm: the place is outside the body. Hint: check the place, its unit and the mesh's; or \
+         give the probe a `set`",
+        1e3 * *.distance, place(nearest), 1e3 * *.edge
+    )]
+    FarProbe { index: usize, distance: f64, nearest: Vec3, edge: f64 },
+    #[error(
+        "solid.probe.name: a name of {length} letters is too long for the names of files, which take \
+         {LONGEST_NAME}; give the probe a shorter `name`"
+    )]
+    LongName { index: usize, length: usize },
+    #[error(
+        "solid.fixed.{axis}: the inner sleeve goes {:.4} mm across at t = {time} s, against the outer one, and the rubber \
+         between them is {:.4} mm thick: sleeves would pass through each other. Hint: ask for less, and check the unit",
+        1e3 * *.across, 1e3 * *.wall
+    )]
+    ThroughSleeve { index: usize, axis: &'static str, across: f64, wall: f64, time: f64 },
+    #[error("solid.probe.name: two probes are called \"{name}\"; give one of them another `name`")]
+    ProbeTwice { index: usize, name: String },
+}
+
+impl SolidSetupError {
+    pub fn about(&self) -> About {
+        match *self {
+            SolidSetupError::Material(_) | SolidSetupError::DeckMaterial { .. } => {
+                About::key("solid.material")
+            }
+            SolidSetupError::OtherLaw => About::key("solid.material.law"),
+            SolidSetupError::Rubber(_) => About::key("solid"),
+            SolidSetupError::FourNodes => About::key("solid.mesh.file"),
+            SolidSetupError::NotHeld { .. } => About::key("solid.harmonic.set"),
+            SolidSetupError::VibratesTwoWays { .. } | SolidSetupError::VibratesFreely { .. } => {
+                About::key("solid.harmonic.axis")
+            }
+            SolidSetupError::NoSuchSet { part: table, index, .. }
+            | SolidSetupError::EmptySet { part: table, index, .. } => {
+                About::Item { table, index, key: "set" }
+            }
+            SolidSetupError::NoSurface { index, .. } => {
+                About::Item { table: "solid.load", index, key: "set" }
+            }
+            SolidSetupError::HeldTwice { index, axis: key, .. }
+            | SolidSetupError::ThroughSleeve { index, axis: key, .. } => {
+                About::Item { table: "solid.fixed", index, key }
+            }
+            SolidSetupError::LoadOnSupport { index, .. } => {
+                About::Item { table: "solid.load", index, key: "set" }
+            }
+            SolidSetupError::FarProbe { index, .. } => {
+                About::Item { table: "solid.probe", index, key: "at" }
+            }
+            SolidSetupError::ProbeTwice { index, .. } | SolidSetupError::LongName { index, .. } => {
+                About::Item { table: "solid.probe", index, key: "name" }
+            }
+        }
+    }
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() { "none".to_string() } else { names.join(", ") }
+}
+
+fn place(at: &Vec3) -> String {
+    format!("at {:.6}, {:.6}, {:.6} m", at[0], at[1], at[2])
+}
+
+/// Nodes under one name: mean displacements and sums of forces are taken over them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedNodes {
+    /// Letters, digits, `_`, `-` and `.` only, unlike any other of its kind.
+    pub name: String,
+    pub nodes: Vec<u32>,
+}
+
+/// Components held under the name of one set. A component of two sets belongs to the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    pub name: String,
+    /// Node and axis.
+    pub components: Vec<(u32, usize)>,
+}
+
+impl Support {
+    /// The axes along which it holds something, ascending.
+    pub fn axes(&self) -> Vec<usize> {
+        (0..3).filter(|axis| self.components.iter().any(|(_, held)| held == axis)).collect()
+    }
+
+    /// Sum of vectors over its components, for each of its [`axes`](Support::axes).
+    pub fn total(&self, of: &[Vec3]) -> Vec<f64> {
+        let along = |axis: usize| {
+            let own = self.components.iter().filter(move |(_, held)| *held == axis);
+            own.map(|(node, axis)| of[*node as usize][*axis]).sum()
+        };
+        self.axes().into_iter().map(along).collect()
+    }
+}
+
+/// A solid ready to be solved, and what is to be written of it.
+#[derive(Clone, Debug)]
+pub struct SolidSetup {
+    pub problem: SolidProblem,
+    pub labels: Labels,
+    /// Velocities at the start of a run, m/s.
+    pub velocity: Vec<Vec3>,
+    pub probes: Vec<NamedNodes>,
+    /// Supports; their reactions are written.
+    pub supports: Vec<Support>,
+    /// What is no error and perhaps not meant.
+    pub notes: Vec<String>,
+}
+
+/// Bytes of a probe's name: file systems take 255 with what is put before and behind it.
+const LONGEST_NAME: usize = 120;
+/// Part of a load on held components above which it gets a word: the edge of a loaded face that is held
+/// at its end has less on meshes of ten cells or more.
+const WORTH_A_WORD: f64 = 0.2;
+/// Part of the longest edge within which a probe's place counts as its node's.
+const ON_A_NODE: f64 = 0.01;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// What acts on a solid from outside, and where it is looked at.
+pub struct Outside {
+    pub prescribed: Vec<Prescribed>,
+    pub supports: Vec<Support>,
+    pub loads: Vec<Load>,
+    pub probes: Vec<NamedNodes>,
+    pub notes: Vec<String>,
+}
+
+/// # Errors
+/// A set that is not there or does not fit its use, supports that contradict each other.
+pub fn outside(scene: &SolidScene, built: &BuiltMesh) -> Result<Outside, SolidSetupError> {
+    let mesh = &built.mesh;
+    let (prescribed, supports) = supports(scene, mesh)?;
+    let (mut notes, mut loads) = (Vec::new(), Vec::new());
+    for (index, load) in scene.loads.iter().enumerate() {
+        let of_set = set_loads(mesh, index, &load.set, &load.kind)?;
+        notes.extend(on_supports(index, &load.set, &of_set, &prescribed)?);
+        loads.extend(of_set);
+    }
+    let probes = probes(scene, mesh, built.quality.longest_edge, &mut notes)?;
+    Ok(Outside { prescribed, supports, loads, probes, notes })
+}
+
+/// # Errors
+/// As [`outside`]; a material of no solid, or one that a deck contradicts.
+pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidSetupError> {
+    let mesh = &built.mesh;
+    let Law::LinearElastic { youngs_modulus, poisson_ratio } = scene.law else {
+        return Err(SolidSetupError::OtherLaw);
+    };
+    let material = LinearElastic::new(youngs_modulus, poisson_ratio)?;
+    let mut notes = deck_materials(scene, [youngs_modulus, poisson_ratio], built)?;
+    let Outside { prescribed, supports, loads, probes, notes: of_sets } = outside(scene, built)?;
+    notes.extend(of_sets);
+    let problem = SolidProblem {
+        nodes: mesh.nodes.clone(),
+        elements: mesh.elements.clone(),
+        material,
+        density: scene.density,
+        damping: scene.damping,
+        damped_motion: scene.damped_motion,
+        prescribed,
+        loads,
+        gravity: scene.gravity,
+    };
+    let [u, v, w] = scene.velocity;
+    let velocity =
+        mesh.nodes.iter().map(|[_, y, z]| [u, v - scene.spin * z, w + scene.spin * y]).collect();
+    let labels = built.labels.clone();
+    Ok(SolidSetup { problem, labels, velocity, probes, supports, notes })
+}
+
+/// Every set of the mesh, once.
+fn set_names(mesh: &TetMesh) -> Vec<String> {
+    let all = mesh.node_sets.keys().chain(mesh.surface_sets.keys()).chain(mesh.element_sets.keys());
+    all.cloned().collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Nodes of a set of nodes, faces or elements, ascending.
+fn nodes_of_set(
+    mesh: &TetMesh,
+    set: &str,
+    part: &'static str,
+    index: usize,
+) -> Result<Vec<u32>, SolidSetupError> {
+    let nodes = if let Some(nodes) = mesh.node_sets.get(set) {
+        nodes.clone()
+    } else if let Some(faces) = mesh.surface_sets.get(set) {
+        mesh.nodes_of_faces(faces)
+    } else if let Some(elements) = mesh.element_sets.get(set) {
+        let nodes = elements.iter().flat_map(|&element| mesh.elements.nodes(element as usize));
+        nodes.copied().collect::<BTreeSet<_>>().into_iter().collect()
+    } else {
+        let (set, known) = (set.to_string(), set_names(mesh));
+        return Err(SolidSetupError::NoSuchSet { part, index, set, known });
+    };
+    match nodes.is_empty() {
+        true => Err(SolidSetupError::EmptySet { part, index, set: set.to_string() }),
+        false => Ok(nodes),
+    }
+}
+
+type Supports = (Vec<Prescribed>, Vec<Support>);
+
+/// Held components. A node of two sets may be held by both if they move it alike.
+fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupError> {
+    let mut owner: BTreeMap<(u32, usize), (&str, &Profile)> = BTreeMap::new();
+    let mut named: Vec<Support> = Vec::new();
+    for (index, held) in scene.held.iter().enumerate() {
+        let nodes = nodes_of_set(mesh, &held.set, "solid.fixed", index)?;
+        let mut components = Vec::new();
+        for (axis, profile) in held.motion.iter().enumerate() {
+            let Some(profile) = profile else { continue };
+            for &node in &nodes {
+                match owner.entry((node, axis)) {
+                    Entry::Vacant(free) => {
+                        free.insert((&held.set, profile));
+                        components.push((node, axis));
+                    }
+                    Entry::Occupied(taken) if taken.get().1 == profile => {}
+                    Entry::Occupied(taken) => {
+                        return Err(SolidSetupError::HeldTwice {
+                            index,
+                            first: taken.get().0.to_string(),
+                            second: held.set.clone(),
+                            axis: AXES[axis],
+                            at: mesh.nodes[node as usize],
+                        });
+                    }
+                }
+            }
+        }
+        // Two entries for one set, an axis each, are one support.
+        let name = column_name(&held.set);
+        match named.iter_mut().find(|other| other.name == name) {
+            Some(support) => support.components.extend(components),
+            None => named.push(Support { name, components }),
+        }
+    }
+    let prescribed = owner
+        .into_iter()
+        .map(|((node, axis), (_, profile))| Prescribed { node, axis, profile: profile.clone() })
+        .collect();
+    Ok((prescribed, named))
+}
+
+/// Forces of one load: over a surface in proportion to the area, over loose nodes evenly.
+fn set_loads(
+    mesh: &TetMesh,
+    index: usize,
+    set: &str,
+    kind: &LoadKind,
+) -> Result<Vec<Load>, SolidSetupError> {
+    match kind {
+        LoadKind::Pressure(profile) => {
+            let faces = mesh.surface_sets.get(set).ok_or_else(|| {
+                let known = mesh.surface_sets.keys().cloned().collect();
+                if set_names(mesh).iter().any(|name| name == set) {
+                    SolidSetupError::NoSurface { index, set: set.to_string(), known }
+                } else {
+                    let (part, set) = ("solid.load", set.to_string());
+                    SolidSetupError::NoSuchSet { part, index, set, known }
+                }
+            })?;
+            let areas = vector_areas(mesh, faces);
+            let forces = (0..).zip(areas).filter(|(_, area)| *area != [0.0; 3]);
+            let forces = forces.map(|(node, area)| (node, area.map(|a| -a))).collect();
+            Ok(vec![Load { forces, profile: profile.clone() }])
+        }
+        LoadKind::Force(axes) => {
+            let shares = shares(mesh, index, set)?;
+            let along = |axis: usize, profile: &Profile| {
+                let force = |share: f64| {
+                    let mut force = [0.0; 3];
+                    force[axis] = share;
+                    force
+                };
+                let forces = shares.iter().map(|(node, share)| (*node, force(*share))).collect();
+                Load { forces, profile: profile.clone() }
+            };
+            let given = axes.iter().enumerate();
+            Ok(given.filter_map(|(axis, p)| p.as_ref().map(|p| along(axis, p))).collect())
+        }
+    }
+}
+
+/// Part of a force that each node of a set takes; they sum to one.
+fn shares(mesh: &TetMesh, index: usize, set: &str) -> Result<Vec<(u32, f64)>, SolidSetupError> {
+    let faces: &[Face] = mesh.surface_sets.get(set).map_or(&[], Vec::as_slice);
+    if faces.is_empty() {
+        let nodes = nodes_of_set(mesh, set, "solid.load", index)?;
+        let share = 1.0 / nodes.len() as f64;
+        return Ok(nodes.into_iter().map(|node| (node, share)).collect());
+    }
+    let areas = tributary_areas(mesh, faces, Share::Consistent);
+    let total: f64 = areas.iter().sum();
+    let carrying = (0..).zip(areas).filter(|(_, area)| *area != 0.0);
+    Ok(carrying.map(|(node, area)| (node, area / total)).collect())
+}
+
+/// A load that a support takes at once does nothing: whole it is an error, a large part gets a note.
+fn on_supports(
+    index: usize,
+    set: &str,
+    loads: &[Load],
+    prescribed: &[Prescribed],
+) -> Result<Option<String>, SolidSetupError> {
+    let held: BTreeSet<(u32, usize)> = prescribed.iter().map(|p| (p.node, p.axis)).collect();
+    let (mut all, mut taken) = ([0.0; 3], [0.0; 3]);
+    for load in loads.iter().filter(|load| !load.profile.is_zero()) {
+        for (node, force) in &load.forces {
+            for axis in 0..3 {
+                all[axis] += force[axis].abs();
+                if held.contains(&(*node, axis)) {
+                    taken[axis] += force[axis].abs();
+                }
+            }
+        }
+    }
+    let (sum, on_held): (f64, f64) = (all.iter().sum(), taken.iter().sum());
+    let along: Vec<&str> =
+        (0..3).filter(|&axis| taken[axis] > 0.0).map(|axis| AXES[axis]).collect();
+    let along = along.join(" and ");
+    // Rounding of sums of shares.
+    if sum > 0.0 && on_held >= (1.0 - 1e-9) * sum {
+        return Err(SolidSetupError::LoadOnSupport { index, set: set.to_string(), along });
+    }
+    let part = 100.0 * on_held / sum;
+    Ok((on_held > WORTH_A_WORD * sum).then(|| {
+        format!(
+            "{part:.0} % of the load on set \"{set}\" is on nodes that are held along {along}: the support \
+             takes it at once"
+        )
+    }))
+}
+
+/// Nodes of the probes; places next to no node get a note, those outside the mesh are errors.
+fn probes(
+    scene: &SolidScene,
+    mesh: &TetMesh,
+    edge: f64,
+    notes: &mut Vec<String>,
+) -> Result<Vec<NamedNodes>, SolidSetupError> {
+    let mut probes: Vec<NamedNodes> = Vec::new();
+    for (index, probe) in scene.probes.iter().enumerate() {
+        let nodes = match &probe.of {
+            ProbeOf::Set(set) => nodes_of_set(mesh, set, "solid.probe", index)?,
+            ProbeOf::Place(at) => {
+                let off = |p: &Vec3| (0..3).map(|i| (p[i] - at[i]) * (p[i] - at[i])).sum::<f64>();
+                let nearest =
+                    (0u32..).zip(&mesh.nodes).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+                let Some((node, nearest)) = nearest else { continue };
+                let distance = off(nearest).sqrt();
+                let near = distance <= edge;
+                if !near {
+                    let nearest = *nearest;
+                    return Err(SolidSetupError::FarProbe { index, distance, nearest, edge });
+                }
+                if distance > ON_A_NODE * edge {
+                    notes.push(format!(
+                        "probe \"{}\" is that of the nearest node, {} ({:.4} mm away)",
+                        probe.name,
+                        place(nearest),
+                        1e3 * distance
+                    ));
+                }
+                vec![node]
+            }
+        };
+        let name = column_name(&probe.name);
+        if name.len() > LONGEST_NAME {
+            return Err(SolidSetupError::LongName { index, length: name.len() });
+        }
+        if probes.iter().any(|other| other.name == name) {
+            return Err(SolidSetupError::ProbeTwice { index, name });
+        }
+        probes.push(NamedNodes { name, nodes });
+    }
+    Ok(probes)
+}
+
+/// A name that can head a column of a table.
+fn column_name(name: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
+    let name: String = name.trim().chars().map(plain).collect();
+    if name.is_empty() { "set".to_string() } else { name }
+}

@@ -1,0 +1,341 @@
+//! The mesh that a scene asks for: read or made, repaired as asked, checked, with its sets.
+
+use crate::mesh::check::{Faults, Limits, check};
+use crate::mesh::generate::{Solid, bar, bushing, contact_block, ring, shaft};
+use crate::mesh::numbering::reverse_cuthill_mckee;
+use crate::mesh::quadratic::elevate;
+use crate::mesh::quality::{Quality, quality};
+use crate::mesh::read::{DeckMaterial, ReadError, read_abaqus, read_gmsh};
+use crate::mesh::repair::{Repair, Repaired, repair};
+use crate::mesh::select::Region;
+use crate::mesh::topology::surface;
+use crate::mesh::{MeshError, Order, TetMesh};
+use crate::scene::build::about::About;
+use crate::scene::build::bore_shape::{BorePlace, elevate_with_bore};
+use crate::scene::resolve::housing_scene::HousedScene;
+use crate::scene::resolve::solid_mesh::{extension, key_of_dimension};
+use crate::scene::resolve::solid_scene::{MeshRequest, MeshSource, SetPlace};
+use crate::scene::text::input_file;
+use crate::scene::text::input_file::{InputError, LARGEST_DATA};
+use crate::solids::labels::Labels;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// A mesh that can be solved on, and how it came about.
+#[derive(Clone, Debug)]
+pub struct BuiltMesh {
+    pub mesh: TetMesh,
+    /// What messages call its elements and nodes: as the file does.
+    pub labels: Labels,
+    pub quality: Quality,
+    pub repaired: Repaired,
+    /// Mid-side nodes that had to stay off a curved surface.
+    pub pulled_back: usize,
+    /// What a person should know about the reading.
+    pub notes: Vec<String>,
+    /// Of an input deck; a scene names the one that is used.
+    pub materials: Vec<DeckMaterial>,
+}
+
+#[derive(Debug, Error)]
+pub enum SolidMeshError {
+    #[error("solid.mesh.file: cannot read {}: {source}{}", path.display(), where_it_is(path, source))]
+    File { path: PathBuf, source: InputError },
+    #[error("{}: {source}", path.display())]
+    Read { path: PathBuf, source: ReadError },
+    #[error("{}: {faults}", path.display())]
+    Faults { path: PathBuf, faults: Faults },
+    #[error("{}: {source}", path.display())]
+    Mesh { path: PathBuf, source: MeshError },
+    #[error("{key}: {source}")]
+    Made { key: String, source: MeshError },
+    #[error(
+        "solid.mesh: these dimensions and cells do not make a sound mesh, change them: {faults}"
+    )]
+    MadeFaults { faults: Faults },
+    #[error(
+        "solid.mesh.order: {} has ten-node elements, from which no four-node ones are made; leave \
+         `order` out, or save the mesh with elements of first order",
+        path.display()
+    )]
+    Order { path: PathBuf },
+    #[error(
+        "solid.set.name: the mesh, or an earlier [[solid.set]], already has a set called \"{name}\""
+    )]
+    SetTwice { index: usize, name: String },
+    #[error(
+        "solid.mesh.cells: {cells:.1e} cells, more than the {MOST_CELLS:.0e} that are made; take fewer"
+    )]
+    TooFine { cells: f64 },
+    #[error("solid.set: {source}")]
+    Set { index: usize, source: MeshError },
+}
+
+impl SolidMeshError {
+    /// Part of the scene that it is about; nothing where the fault is inside a mesh file.
+    pub fn about(&self) -> Option<About> {
+        Some(match self {
+            SolidMeshError::Read { .. }
+            | SolidMeshError::Faults { .. }
+            | SolidMeshError::Mesh { .. } => return None,
+            SolidMeshError::File { .. } => About::key("solid.mesh.file"),
+            SolidMeshError::Made { key, .. } => About::key(key),
+            SolidMeshError::MadeFaults { .. } => About::key("solid.mesh"),
+            SolidMeshError::Order { .. } => About::key("solid.mesh.order"),
+            SolidMeshError::TooFine { .. } => About::key("solid.mesh.cells"),
+            SolidMeshError::SetTwice { index, .. } | SolidMeshError::Set { index, .. } => {
+                About::Item { table: "solid.set", index: *index, key: "name" }
+            }
+        })
+    }
+}
+
+/// Advice where there is no such file.
+fn where_it_is(path: &Path, source: &InputError) -> String {
+    match std::path::absolute(path) {
+        Ok(whole) if source.is_missing() => format!(
+            ". Hint: a relative name starts at the scene's folder, and this one is {}",
+            whole.display()
+        ),
+        _ => String::new(),
+    }
+}
+
+/// Part of the mesh's size within which nodes lie on the surface of a set.
+pub(crate) const ON_SURFACE: f64 = 1e-6;
+
+/// Hexahedra that a generator may make, six tetrahedra each: some gigabytes.
+const MOST_CELLS: f64 = 1e7;
+
+/// What results on a quarter of a bushing are of.
+const QUARTER: &str = "the mesh is a quarter of the bushing: forces, stiffness and energies of the whole are four times \
+                       those of the results";
+
+/// Reads or makes the mesh.
+///
+/// # Errors
+/// A file that cannot be read, a mesh with a fault that no repair was asked for, dimensions that do
+/// not fit, a set that matches nothing.
+pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
+    build_around(request, None)
+}
+
+/// The same for a housing: where a file's elements are raised to ten nodes, the bore stays round.
+///
+/// # Errors
+/// Those of [`build`].
+pub fn build_housing(scene: &HousedScene) -> Result<BuiltMesh, SolidMeshError> {
+    build_around(&scene.solid.mesh, Some(&BorePlace::of(scene)))
+}
+
+fn build_around(
+    request: &MeshRequest,
+    bore: Option<&BorePlace>,
+) -> Result<BuiltMesh, SolidMeshError> {
+    let (mut notes, mut materials) = (Vec::new(), Vec::new());
+    let mut repaired = Repaired::default();
+    let mut labels = Labels::default();
+    let limits =
+        Limits { aspect: request.largest_aspect, cavities: request.cavities, ..Limits::default() };
+    let (mesh, pulled_back) = match &request.source {
+        MeshSource::File { path, unit, .. } => {
+            let bytes = input_file::read(path, LARGEST_DATA)
+                .map_err(|source| SolidMeshError::File { path: path.clone(), source })?;
+            let loaded = match extension(&path.to_string_lossy()).as_str() {
+                "inp" => read_abaqus(&bytes, *unit),
+                _ => read_gmsh(&bytes, *unit),
+            };
+            let mut loaded =
+                loaded.map_err(|source| SolidMeshError::Read { path: path.clone(), source })?;
+            request.place.put(&mut loaded.mesh.nodes);
+            notes.extend(loaded.notes.iter().map(ToString::to_string));
+            materials = loaded.materials;
+            let tolerance = limits.duplicate * loaded.mesh.size();
+            let wanted = Repair {
+                orient: request.orient,
+                merge_duplicates: request.merge_duplicates.then_some(tolerance),
+                drop_unreferenced: request.drop_unreferenced,
+            };
+            let places = loaded.mesh.nodes.clone();
+            labels.elements = loaded.numbers.elements;
+            let (mesh, done) = repair(loaded.mesh, &wanted)
+                .map_err(|error| in_mesh(path, named_in_file(error, &labels)))?;
+            repaired = done;
+            labels.nodes = labels_of_nodes(&mesh, &places, &loaded.numbers.nodes);
+            check(&mesh, &limits).map_err(|faults| {
+                let faults = named(faults, &labels);
+                SolidMeshError::Faults { path: path.clone(), faults }
+            })?;
+            let (mesh, pulled_back, bent) = from_file(mesh, request, bore, path)?;
+            notes.extend(bent);
+            // Nodes put on edges come last, and the file has none of them.
+            labels.nodes.resize(mesh.nodes.len(), None);
+            (mesh, pulled_back)
+        }
+        made => {
+            let cells = cells(made);
+            if cells > MOST_CELLS {
+                return Err(SolidMeshError::TooFine { cells });
+            }
+            let failed = |source: MeshError| {
+                let dimension = match &source {
+                    MeshError::Dimension { what, .. } => key_of_dimension(what),
+                    _ => None,
+                };
+                let key = format!("solid.mesh.{}", dimension.unwrap_or("generate"));
+                SolidMeshError::Made { key, source }
+            };
+            let solid = generate(made).map_err(failed)?;
+            let (mut mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
+            if pulled_back > 0 {
+                notes.push(format!(
+                    "{pulled_back} mid-side nodes stay off their curved surfaces, where elements that are thinner than the arc of a \
+                     cell is high would fold: the body is a polygon there; take more cells around, or fewer through the wall"
+                ));
+            }
+            if request.is_quarter() {
+                notes.push(QUARTER.to_string());
+            }
+            request.place.put(&mut mesh.nodes);
+            check(&mesh, &limits).map_err(|faults| {
+                let faults = named(faults, &labels);
+                SolidMeshError::MadeFaults { faults }
+            })?;
+            (mesh, pulled_back)
+        }
+    };
+    let mesh = with_sets(mesh, request)?;
+    let (mesh, labels) = match request.renumber {
+        true => {
+            let renumbered = reverse_cuthill_mckee(mesh);
+            let labels = labels.renumbered(&renumbered.element, &renumbered.node);
+            (renumbered.mesh, labels)
+        }
+        false => (mesh, labels),
+    };
+    Ok(BuiltMesh { quality: quality(&mesh), mesh, labels, repaired, pulled_back, notes, materials })
+}
+
+fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {
+    SolidMeshError::Mesh { path: path.to_path_buf(), source }
+}
+
+/// Faults by the numbers that messages have for elements and nodes.
+fn named(faults: Faults, labels: &Labels) -> Faults {
+    let element = |index: u64| labels.element(index as usize);
+    let node = |index: u64| labels.node(index as usize).unwrap_or(index + 1);
+    Faults(faults.0.into_iter().map(|fault| fault.renumbered(element, node)).collect())
+}
+
+/// A repair that fails, with the number that the file has for the element.
+fn named_in_file(error: MeshError, labels: &Labels) -> MeshError {
+    match error {
+        MeshError::Collapsed { element, tolerance } => {
+            MeshError::Collapsed { element: labels.element(element as usize), tolerance }
+        }
+        other => other,
+    }
+}
+
+/// The file's numbers of the nodes that repairs have left. They drop nodes, and neither move nor
+/// reorder any: those that are left are found one after the other by their places.
+fn labels_of_nodes(mesh: &TetMesh, places: &[[f64; 3]], numbers: &[u64]) -> Vec<Option<u64>> {
+    let mut read = places.iter().zip(numbers);
+    let next = |place: &[f64; 3]| read.find(|(at, _)| *at == place).map(|(_, number)| *number);
+    mesh.nodes.iter().map(next).collect()
+}
+
+/// A file's mesh in the order that is asked for, mid-side nodes off curved surfaces, and a note.
+fn from_file(
+    mesh: TetMesh,
+    request: &MeshRequest,
+    bore: Option<&BorePlace>,
+    path: &Path,
+) -> Result<(TetMesh, usize, Option<String>), SolidMeshError> {
+    match (mesh.order(), request.order) {
+        (Order::Quadratic, Some(Order::Linear)) => {
+            Err(SolidMeshError::Order { path: path.to_path_buf() })
+        }
+        (Order::Linear, Some(Order::Quadratic)) => {
+            let raised = match bore {
+                Some(bore) => elevate_with_bore(&mesh, request, bore),
+                None => elevate(&mesh, &[]).map(|elevated| (elevated, None)),
+            };
+            let (elevated, note) = raised.map_err(|source| in_mesh(path, source))?;
+            Ok((elevated.mesh, elevated.pulled_back, note))
+        }
+        _ => Ok((mesh, 0, None)),
+    }
+}
+
+fn of_order(solid: Solid, order: Option<Order>) -> Result<(TetMesh, usize), MeshError> {
+    if order != Some(Order::Quadratic) {
+        return Ok((solid.mesh, 0));
+    }
+    let elevated = solid.quadratic()?;
+    Ok((elevated.mesh, elevated.pulled_back))
+}
+
+/// About how many hexahedra a generator makes.
+fn cells(source: &MeshSource) -> f64 {
+    let product = |counts: &[usize]| counts.iter().map(|count| *count as f64).product::<f64>();
+    match source {
+        MeshSource::File { .. } => 0.0,
+        MeshSource::Bar { cells, .. } => product(cells),
+        MeshSource::Block(block) => {
+            let fine = block.cells_per_half_width;
+            40.0 * product(&[fine, fine, block.depth_cells])
+        }
+        MeshSource::Ring(_, mesh) => product(&[mesh.around, mesh.radial, mesh.axial]),
+        MeshSource::Shaft { stations, longest_layer, around, radial, .. } => {
+            let length = stations[stations.len() - 1] - stations[0];
+            let layers = length / longest_layer + stations.len() as f64;
+            layers * product(&[*around, radial + around.div_ceil(16)])
+        }
+        MeshSource::Cage(cage, mesh) => {
+            4.0 * product(&[cage.pocket_count, mesh.quarter, mesh.bar, mesh.wall])
+        }
+        MeshSource::Housing(_, mesh) => 2.0 * product(&[mesh.around, mesh.radial, mesh.axial]),
+        MeshSource::Bushing(_, mesh) => product(&[mesh.around, mesh.radial, mesh.axial]),
+    }
+}
+
+fn generate(source: &MeshSource) -> Result<Solid, MeshError> {
+    match source {
+        MeshSource::File { .. } => Err(MeshError::NoElements),
+        MeshSource::Bar { size, cells } => bar(*size, *cells),
+        MeshSource::Block(block) => contact_block(block),
+        MeshSource::Ring(shape, cells) => ring(shape, cells),
+        MeshSource::Shaft { radius, stations, longest_layer, around, radial } => {
+            shaft(*radius, stations, *longest_layer, *around, *radial)
+        }
+        MeshSource::Cage(cage, cells) => cage.solid(cells),
+        MeshSource::Housing(housing, cells) => housing.solid(cells),
+        MeshSource::Bushing(body, cells) => bushing(body, cells),
+    }
+}
+
+/// Sets by geometry, beside those the mesh has.
+fn with_sets(mut mesh: TetMesh, request: &MeshRequest) -> Result<TetMesh, SolidMeshError> {
+    let boundary = if request.sets.is_empty() { Vec::new() } else { surface(&mesh) };
+    for (index, set) in request.sets.iter().enumerate() {
+        let tolerance = set.tolerance.unwrap_or(ON_SURFACE * mesh.size());
+        let failed = |source| SolidMeshError::Set { index, source };
+        if mesh.node_sets.contains_key(&set.name) || mesh.surface_sets.contains_key(&set.name) {
+            return Err(SolidMeshError::SetTwice { index, name: set.name.clone() });
+        }
+        match set.place {
+            SetPlace::Surface(on) => {
+                mesh.add_surface_set(&set.name, &boundary, &on, tolerance).map_err(failed)?;
+            }
+            SetPlace::Box { low, high } => {
+                let region = Region::Box {
+                    low: low.map(|x| x - tolerance),
+                    high: high.map(|x| x + tolerance),
+                };
+                mesh.add_node_set(&set.name, &region).map_err(failed)?;
+            }
+        }
+    }
+    Ok(mesh)
+}

@@ -1,0 +1,435 @@
+//! From tables with names to bearings on bodies: what sits where, and what joins what.
+
+use crate::assembly::loads::DrivenBody;
+use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::scene::build::assembly::{
+    AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, PlacedHousing, SceneBody, Spring, SpringAt,
+    SpringEnd,
+};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::bearing::{Reader, resolve_bearing, text};
+use crate::scene::resolve::dynamics::{
+    check_inertia, check_unbalance, foundation, rotating_load, rotation,
+};
+use crate::scene::resolve::housing::in_housing;
+use crate::scene::resolve::housing_scene::HousingMethod;
+use crate::scene::resolve::places::{
+    refuse_races_apart, refuse_rubber_in_races, refuse_shared_places, refuse_thick_shafts,
+};
+use crate::scene::resolve::resolved::{DefaultUsed, Scene};
+use crate::scene::resolve::shaft::{beam, refuse_places_off_shafts, refuse_springs_on_elements};
+use crate::scene::resolve::solid::{refuse_fields, refuse_solid};
+use crate::scene::resolve::spring::spring;
+use crate::scene::tables::assembly::OWN_RACES;
+use crate::scene::tables::keys;
+use crate::scene::text::document::Document;
+use crate::scene::text::scopes::no_such;
+use crate::scene::text::value::Checked;
+
+/// Whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
+pub(crate) fn is_assembly(document: &Document) -> bool {
+    const OF_SEVERAL: [&str; 2] = ["body", "spring"];
+    const PLACES: [&str; 5] = ["inner_on", "inner_at", "outer_on", "outer_at", "reversed"];
+    let is_given = |key: &&str| document.value(&format!("bearing.{key}")).is_some();
+    document.names("bearing").next().is_some()
+        || PLACES.iter().any(is_given)
+        || OF_SEVERAL.iter().any(|table| document.first_below(table).is_some())
+        || OF_SEVERAL.iter().any(|table| document.names(table).next().is_some())
+}
+
+/// Resolves a scene of several bearings, or of one on bodies of the scene.
+///
+/// # Errors
+/// The first thing missing or contradictory, in the order of the scene.
+pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError> {
+    refuse_strange_names(document)?;
+    let bodies: Vec<&str> = document.names("body").collect();
+    let names: Vec<Option<&str>> = match document.names("bearing").map(Some).collect::<Vec<_>>() {
+        none if none.is_empty() => vec![None],
+        some => some,
+    };
+    let mut defaults_used = Vec::new();
+    // Defaults that all bearings share.
+    let mut told = Vec::new();
+    let mut bearings = Vec::with_capacity(names.len());
+    for name in names {
+        bearings.push(bearing(document, name, &bodies, &mut told)?);
+    }
+    refuse_shared_places(document, &bearings)?;
+    refuse_mixed_methods(document, &bearings)?;
+    let ball = bearings.iter().map(|b| b.scene.geometry.ball_radius).fold(0.0, f64::max);
+    let needs_mass =
+        bearings[0].scene.dynamics.run.is_some() || bearings[0].scene.gravity != [0.0; 3];
+    let resolved = bodies
+        .iter()
+        .map(|name| body(document, name, ball, needs_mass, &mut defaults_used))
+        .collect::<Result<Vec<_>, _>>()?;
+    let springs = document
+        .names("spring")
+        .map(|name| spring(document, name, (&bodies, &bearings), &mut defaults_used))
+        .collect::<Result<Vec<_>, _>>()?;
+    refuse_places_off_shafts(document, (&bearings, &springs), &resolved)?;
+    refuse_races_apart(document, &bearings, &resolved)?;
+    refuse_thick_shafts(document, &bearings, &resolved)?;
+    refuse_rubber_in_races(document, &bearings, &springs)?;
+    name_what_holds(&mut bearings, &springs);
+    let sensors = Vec::new();
+    let scene = AssemblyScene { bearings, bodies: resolved, springs, sensors, defaults_used };
+    refuse_shared_columns(document, &scene)?;
+    refuse_free_bodies(document, &scene)?;
+    refuse_springs_on_elements(document, &scene)?;
+    if scene.housing_method().is_none() && !scene.has_shafts_in_elements() {
+        refuse_fields(document)?;
+    }
+    if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
+        refuse_inertia(document, &scene)?;
+    }
+    Ok(scene)
+}
+
+/// A race without a foundation may have springs that hold it: its default says which.
+fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
+    for (index, placed) in bearings.iter_mut().enumerate() {
+        let of_race = |end: &SpringEnd| end.at == SpringAt::Race { bearing: index, side: 1 };
+        let holding = springs.iter().filter(|spring| spring.ends.iter().any(of_race));
+        let names: Vec<&str> = holding.map(|spring| spring.name.as_str()).collect();
+        if names.is_empty() {
+            continue;
+        }
+        let defaults = placed.scene.dynamics.defaults_used.iter_mut();
+        for told in defaults.filter(|told| told.key == "outer_race.foundation") {
+            told.reason = format!("the moving outer race is held by spring {}", names.join(", "));
+        }
+    }
+}
+
+/// What bodies cannot have where equilibria follow one another.
+fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    const UNBALANCE: &str = "an unbalance is inertia";
+    const WHAT: [(&str, &str); 2] = [
+        ("body.torque", "without inertia no speed follows from a torque"),
+        ("body.unbalance", UNBALANCE),
+    ];
+    let refused = |reason: &str| {
+        let advice = "leave it out, or write method = \"explicit\" in [housing]";
+        Problem::refused(reason, advice)
+    };
+    for body in &scene.bodies {
+        let scoped = document.scoped(&body.name);
+        if let Some((key, reason)) = WHAT.iter().find(|(key, _)| scoped.value(key).is_some()) {
+            return Err(scoped.error(key, refused(reason)));
+        }
+        if let Some(of_section) = scoped.items("body.beam.unbalance").next() {
+            return Err(of_section.error("size", refused(UNBALANCE)));
+        }
+    }
+    Ok(())
+}
+
+/// Names that nothing goes by, that two things go by, and tables that need one.
+fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
+    for table in ["body", "spring"] {
+        if document.names(table).next().is_none() && document.first_below(table).is_some() {
+            let reason = format!("a {table} has a name");
+            let advice = format!("write [{table}.NAME]");
+            return Err(document.refused(table, reason, advice));
+        }
+    }
+    for table in ["inner_race", "outer_race", "housing", "solid"] {
+        let strange =
+            document.names(table).find(|name| !document.names("bearing").any(|b| b == *name));
+        if let Some(name) = strange {
+            return Err(unknown(document, table, name, "bearing", document.names("bearing")));
+        }
+    }
+    let kinds = ["bearing", "body", "spring", "sensor"];
+    for (index, table) in kinds.iter().enumerate() {
+        for other in &kinds[..index] {
+            if let Some(twice) =
+                document.names(table).find(|n| document.names(other).any(|o| o == *n))
+            {
+                let reason = format!("a {other} has this name as well");
+                let advice = "names stand before columns: give each thing its own";
+                return Err(document.error_of_name(table, twice, Problem::refused(reason, advice)));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn unknown<'n>(
+    document: &Document,
+    table: &str,
+    name: &str,
+    kind: &str,
+    known: impl Iterator<Item = &'n str>,
+) -> SceneError {
+    document.error_of_name(table, name, no_such(name, kind, known))
+}
+
+fn bearing(
+    document: &Document,
+    name: Option<&str>,
+    bodies: &[&str],
+    told: &mut Vec<DefaultUsed>,
+) -> Result<PlacedBearing, SceneError> {
+    let mut scoped = match name {
+        Some(name) => document.scoped(name),
+        None => document.common(),
+    };
+    let (carriers, reversed) = {
+        let mut reader = Reader::new(&scoped);
+        let inner = carrier(&reader, 0, "bearing.inner_on", bodies)?;
+        let outer = carrier(&reader, 1, "bearing.outer_on", bodies)?;
+        let at = reader.number("bearing.inner_at").unwrap_or(0.0);
+        let outer_at = reader.given_number("bearing.outer_at").unwrap_or(at);
+        let reversed = matches!(scoped.value("bearing.reversed"), Some(Checked::Boolean(true)));
+        let placed = |body: Option<usize>, at| match body {
+            Some(index) => Carrier::Body { index, at },
+            None => Carrier::Own { at },
+        };
+        (([placed(inner, at), placed(outer, outer_at)], [inner, outer]), reversed)
+    };
+    let (carriers, on) = carriers;
+    if on[0].is_some() && on[0] == on[1] {
+        let reason = "both races would sit on this body";
+        let advice = "write outer_on = \"outer_race\", or another body";
+        return Err(scoped.refused("bearing.outer_on", reason, advice));
+    }
+    for (race, body) in OWN_RACES.iter().zip(on) {
+        let Some(body) = body else { continue };
+        let of_race =
+            |path: &str| path.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'));
+        if let Some(key) = scoped.given_keys().map(|key| key.path).find(|path| of_race(path)) {
+            let reason = format!("this race sits on body.{}", bodies[body]);
+            let advice = format!("write loads and motions in [body.{}]", bodies[body]);
+            return Err(scoped.refused(key, reason, advice));
+        }
+        if *race == OWN_RACES[0] {
+            let of_body = document.scoped(bodies[body]);
+            scoped.take_over(&of_body, "body.speed", "inner_race.speed");
+            require_speed(&scoped, &of_body)?;
+        }
+    }
+    let (mut scene, mut housing) = match scoped.first_below("housing") {
+        Some(_) => in_housing(&scoped)?,
+        None => {
+            refuse_no_housing(document, &scoped, name)?;
+            (resolve_bearing(&scoped)?, None)
+        }
+    };
+    if let (Some(body), Some(_)) = (on[1], &housing) {
+        let reason = format!("the outer race sits on body.{}, not in a bore", bodies[body]);
+        let advice = "leave out outer_on, or the housing";
+        return Err(scoped.refused("bearing.outer_on", reason, advice));
+    }
+    if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
+        for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
+            used.key = scoped.shown(&used.key, true);
+        }
+    }
+    if let Some(body) = on[1] {
+        let speed = Reader::new(&document.scoped(bodies[body])).profile("body.speed");
+        scene.outer_speed = speed.map(|speed| speed.value(0.0));
+    }
+    for (race, _) in OWN_RACES.iter().zip(on).filter(|(_, body)| body.is_some()) {
+        forget_race(&mut scene, race);
+    }
+    name_defaults(&mut scene, &scoped, name, told);
+    Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene, housing })
+}
+
+/// A solid has no use where there is no housing; a common one may be those of the other bearings.
+fn refuse_no_housing(
+    document: &Document,
+    scoped: &Document,
+    name: Option<&str>,
+) -> Result<(), SceneError> {
+    if document.names("housing").next().is_none() {
+        return refuse_solid(scoped);
+    }
+    let Some(own) = name.filter(|name| document.names("solid").any(|solid| solid == *name)) else {
+        return Ok(());
+    };
+    let reason = "this bearing has no housing whose solid it could be";
+    let advice = format!("add [housing.{own}], or leave it out");
+    Err(document.error_of_name("solid", own, Problem::refused(reason, advice)))
+}
+
+/// Balls go round as the body turns that carries the inner race: it must say how fast where their centrifugal force counts.
+fn require_speed(bearing: &Document, body: &Document) -> Result<(), SceneError> {
+    let counts = bearing.value("ball_forces.centrifugal");
+    if !matches!(counts, Some(Checked::Boolean(true))) || bearing.is_given("inner_race.speed") {
+        return Ok(());
+    }
+    let because = " with `ball_forces.centrifugal = true`".to_string();
+    let example = format!("`speed = \"1000 rpm\"` to [{}]", body.shown("body", true));
+    Err(body.error_here("body.speed", Problem::Missing { because, example }))
+}
+
+/// The body that carries a race; `None` for a race that is one itself.
+fn carrier(
+    reader: &Reader,
+    side: usize,
+    key: &str,
+    bodies: &[&str],
+) -> Result<Option<usize>, SceneError> {
+    let document = reader.document;
+    let Some(name) = text(document, key) else {
+        return match (side, bodies.len()) {
+            (0, 1) if text(document, "bearing.outer_on").as_deref() != Some(bodies[0]) => {
+                Ok(Some(0))
+            }
+            (0, 0 | 1) | (1, _) => Ok(None),
+            _ => {
+                let reason = format!("there are several bodies: {}", bodies.join(", "));
+                let advice = "say which one carries the inner race, or \"inner_race\"";
+                Err(document.refused(key, reason, advice))
+            }
+        };
+    };
+    if name == OWN_RACES[side] {
+        return Ok(None);
+    }
+    match bodies.iter().position(|body| *body == name) {
+        Some(index) => Ok(Some(index)),
+        None => Err(document.error(key, no_such(&name, "body", bodies.iter().copied()))),
+    }
+}
+
+/// Defaults of a race that is part of another body say nothing.
+fn forget_race(scene: &mut Scene, race: &str) {
+    let of_race = |used: &DefaultUsed| {
+        used.key == race || used.key.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'))
+    };
+    scene.defaults_used.retain(|used| !of_race(used));
+    scene.dynamics.defaults_used.retain(|used| !of_race(used));
+}
+
+/// Defaults that more than one bearing has are told once; others say whose they are.
+fn name_defaults(
+    scene: &mut Scene,
+    scoped: &Document,
+    name: Option<&str>,
+    told: &mut Vec<DefaultUsed>,
+) {
+    if name.is_none() {
+        return;
+    }
+    let of_bearing = |key: &str| {
+        ["bearing", "inner_race", "outer_race"].contains(&key.split('.').next().unwrap_or_default())
+    };
+    for list in [&mut scene.defaults_used, &mut scene.dynamics.defaults_used] {
+        for used in list.iter_mut().filter(|used| of_bearing(&used.key)) {
+            used.key = scoped.shown(&used.key, true);
+        }
+        list.retain(|used| !told.contains(used));
+        told.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());
+    }
+}
+
+/// Housings that are solved in different ways.
+fn refuse_mixed_methods(document: &Document, bearings: &[PlacedBearing]) -> Result<(), SceneError> {
+    let method = |placed: &PlacedBearing| placed.housing.as_ref().map(|h| h.settings.method);
+    let first = bearings.iter().find_map(method);
+    let other = bearings.iter().find(|placed| method(placed).is_some_and(|m| Some(m) != first));
+    let Some(PlacedBearing { name: Some(name), .. }) = other else { return Ok(()) };
+    let reason = "this housing and another are solved in different ways";
+    let advice = "give all the same method, in [housing]";
+    Err(document.scoped(name).error("housing.method", Problem::refused(reason, advice)))
+}
+
+/// Bodies whose columns would be called as those of a race or a cage.
+fn refuse_shared_columns(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    for body in &scene.bodies {
+        for placed in &scene.bearings {
+            let before = placed.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
+            let parts = [("inner", "inner race"), ("outer", "outer race"), ("cage", "cage")];
+            let same = parts.into_iter().find(|(part, _)| format!("{before}{part}") == body.name);
+            let Some((_, part)) = same else { continue };
+            let of =
+                placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
+            let reason = format!("columns of the {part}{of} begin with this name");
+            let advice = "choose another name, such as hub";
+            let problem = Problem::refused(reason, advice);
+            return Err(document.error_of_name("body", &body.name, problem));
+        }
+    }
+    Ok(())
+}
+
+/// Bodies that nothing is joined to.
+fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let carries = scene
+            .bearings
+            .iter()
+            .flat_map(|bearing| bearing.carriers)
+            .any(|carrier| matches!(carrier, Carrier::Body { index: on, .. } if on == index));
+        let joined = scene
+            .springs
+            .iter()
+            .any(|spring| spring.ends.iter().any(|end| end.at == SpringAt::Body(index)));
+        if !carries && !joined {
+            let reason = "nothing is joined to this body";
+            let advice = format!(
+                "name it in a bearing (inner_on = {0:?}) or a spring (from = {0:?}), or leave it out",
+                body.name
+            );
+            return Err(document.error_of_name(
+                "body",
+                &body.name,
+                Problem::refused(reason, advice),
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn body(
+    document: &Document,
+    name: &str,
+    ball: f64,
+    needs_mass: bool,
+    defaults: &mut Vec<DefaultUsed>,
+) -> Result<SceneBody, SceneError> {
+    let scoped = document.scoped(name);
+    let mut reader = Reader::new(&scoped);
+    let parts = ["mass", "axial", "transverse"].map(|key| format!("body.inertia.{key}"));
+    let beam = beam(&mut reader)?;
+    let inertia = if beam.is_some() {
+        // It follows from the beam.
+        NO_INERTIA
+    } else if needs_mass || parts.iter().any(|key| reader.is_given(key)) {
+        let missing = |key: &String| {
+            let (_, key) = keys::find(key).ok_or_else(|| reader.missing(key, ""))?;
+            let because = format!(" of body.{name}, for a run and with gravity");
+            let example = format!("`inertia.{} = {}` to [body.{name}]", key.name(), key.example());
+            Err(scoped.error(key.path, Problem::Missing { because, example }))
+        };
+        let [mass, axial, transverse] =
+            parts.each_ref().map(|k| reader.given_number(k).map_or_else(|| missing(k), Ok));
+        let inertia = Inertia { mass: mass?, axial: axial?, transverse: transverse? };
+        check_inertia(inertia.axial, inertia.transverse)
+            .map_err(|problem| reader.document.error(&parts[1], problem))?;
+        inertia
+    } else {
+        NO_INERTIA
+    };
+    let race = DrivenBody {
+        inertia,
+        drives: reader.drives("body", ball)?,
+        rotation: rotation(&mut reader, "body"),
+        foundation_stiffness: foundation(&reader, "body", "stiffness"),
+        foundation_damping: foundation(&reader, "body", "damping"),
+    };
+    let rotating_load = rotating_load(&mut reader, "body")?;
+    let unbalance = reader.given_number("body.unbalance").unwrap_or(0.0);
+    if unbalance != 0.0 {
+        check_unbalance(&race, unbalance)
+            .map_err(|problem| reader.document.error("body.unbalance", problem))?;
+    }
+    reader.note_named(defaults);
+    let beam = beam.map(Box::new);
+    Ok(SceneBody { name: name.into(), race, rotating_load, unbalance, beam })
+}

@@ -1,0 +1,326 @@
+//! From the given keys to the resolved scene: defaults, and what must hold between keys.
+
+use crate::assembly::loads::Drive;
+use crate::ch2_housing::bearing::geometry::{BearingKind, Material};
+use crate::ch2_housing::bearing::hertz::HertzModel;
+use crate::equilibrium::statics::{COORDINATE_NAMES, Condition};
+use crate::numeric::profile::Profile;
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::profile;
+use crate::scene::resolve::resolved::{DefaultUsed, Plot, RunPlot, Scene};
+use crate::scene::resolve::{cage, dynamics, geometry, solid};
+use crate::scene::tables::keys;
+use crate::scene::tables::keys::{Kind, Need};
+use crate::scene::text::document::Document;
+use crate::scene::text::units::{parse_number, parse_quantity};
+use crate::scene::text::value::Checked;
+
+/// Validates the document as a whole and turns it into SI.
+///
+/// # Errors
+/// The first key, in a fixed order, that is missing or contradicts others.
+pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
+    solid::refuse_solid(document)?;
+    solid::refuse_fields(document)?;
+    resolve_bearing(document)
+}
+
+/// The bearing of a scene that may hold a solid as well.
+pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> {
+    let mut reader = Reader::new(document);
+    let kind = match reader.required_choice("bearing.kind")? {
+        "angular-contact" => BearingKind::AngularContact,
+        _ => BearingKind::DeepGroove,
+    };
+    let (geometry, dimensions) = geometry::geometry(&mut reader, kind)?;
+    let cage = cage::cage(&reader, &geometry, &dimensions)?;
+    let hertz = match reader.choice("bearing.hertz") {
+        Some("exact") => HertzModel::Exact,
+        _ => HertzModel::HamrockBrewe,
+    };
+    let ball_phase = reader.number("bearing.ball_phase").unwrap_or(0.0);
+    let inner_material = reader.material("bearing.inner_race.material");
+    let outer_material = reader.material("bearing.outer_race.material");
+    let ball_material = reader.material("bearing.ball.material");
+    let inner_drives = reader.drives("inner_race", geometry.ball_radius)?;
+    let conditions = inner_drives.each_ref().map(|drive| match drive {
+        Drive::Load(profile) => Condition::Load(profile.value(0.0)),
+        Drive::Motion(profile) => Condition::Displacement(profile.value(0.0)),
+    });
+    let outer_race = reader.outer_race(geometry.ball_radius)?;
+    let inner_speed = reader.profile("inner_race.speed").map(|speed| speed.value(0.0));
+    let outer_speed = reader.profile("outer_race.speed").map(|speed| speed.value(0.0));
+    let gravity = match document.value("ball_forces.gravity") {
+        Some(Checked::Vector(gravity)) => *gravity,
+        _ => {
+            reader.note_default("ball_forces.gravity");
+            [0.0; 3]
+        }
+    };
+    let centrifugal = match document.value("ball_forces.centrifugal") {
+        Some(Checked::Boolean(centrifugal)) => *centrifugal,
+        _ => {
+            reader.note_default("ball_forces.centrifugal");
+            false
+        }
+    };
+    if centrifugal && inner_speed.is_none() {
+        return Err(reader.missing("inner_race.speed", " with `ball_forces.centrifugal = true`"));
+    }
+    let (plots, run_plots) = reader.plots();
+    let defaults_used = std::mem::take(&mut reader.defaults_used);
+    let parts = dynamics::Parts {
+        geometry: &geometry,
+        dimensions: &dimensions,
+        inner_material: &inner_material,
+        outer_material: &outer_material,
+        cage: cage.as_ref(),
+    };
+    let mut dynamics = dynamics::dynamics(&mut reader, &parts, inner_drives)?;
+    dynamics.plots = run_plots;
+    dynamics.defaults_used = reader.defaults_used;
+    Ok(Scene {
+        title: text(document, "title"),
+        source: text(document, "source"),
+        assumptions: document.assumptions().to_vec(),
+        geometry,
+        dimensions,
+        inner_material,
+        outer_material,
+        ball_material,
+        hertz,
+        cage,
+        ball_phase,
+        conditions,
+        outer_race,
+        inner_speed,
+        outer_speed,
+        gravity,
+        centrifugal,
+        dynamics,
+        plots,
+        rigid_housing: false,
+        sweep: document.sweep().to_vec(),
+        defaults_used,
+    })
+}
+
+/// Looks keys up and keeps note of the defaults used.
+pub(crate) struct Reader<'d> {
+    pub document: &'d Document,
+    defaults_used: Vec<DefaultUsed>,
+}
+
+impl<'d> Reader<'d> {
+    pub fn new(document: &'d Document) -> Reader<'d> {
+        Reader { document, defaults_used: Vec::new() }
+    }
+
+    pub fn into_defaults_used(self) -> Vec<DefaultUsed> {
+        self.defaults_used
+    }
+
+    /// Adds the defaults of a named thing to others, under its name.
+    pub fn note_named(self, defaults: &mut Vec<DefaultUsed>) {
+        let document = self.document;
+        defaults.extend(self.defaults_used.into_iter().map(|mut used| {
+            used.key = document.shown(&used.key, true);
+            used
+        }));
+    }
+
+    pub fn given_number(&self, path: &str) -> Option<f64> {
+        match self.document.value(path)? {
+            Checked::Number(value) => Some(*value),
+            Checked::Integer(value) => Some(*value as f64),
+            _ => None,
+        }
+    }
+
+    pub fn is_given(&self, path: &str) -> bool {
+        self.document.value(path).is_some()
+    }
+
+    /// The given profile; a plain quantity is a constant one.
+    pub fn profile(&self, path: &str) -> Option<Profile> {
+        match self.document.value(path)? {
+            Checked::Number(value) => Some(Profile::Constant(*value)),
+            Checked::Profile(profile) => Some(profile.clone()),
+            _ => None,
+        }
+    }
+
+    /// The given number, else the default of the key table.
+    pub fn number(&mut self, path: &str) -> Option<f64> {
+        self.given_number(path).or_else(|| {
+            self.note_default(path);
+            default_number(path)
+        })
+    }
+
+    pub fn required_number(&self, path: &str, because: &str) -> Result<f64, SceneError> {
+        self.given_number(path).ok_or_else(|| self.missing(path, because))
+    }
+
+    fn given_choice(&self, path: &str) -> Option<&'static str> {
+        match self.document.value(path)? {
+            Checked::Choice(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// The given word, else the default of the key table.
+    pub fn choice(&mut self, path: &str) -> Option<&'static str> {
+        self.given_choice(path).or_else(|| {
+            self.note_default(path);
+            match keys::find(path)?.1.need {
+                Need::Default { value, .. } => Some(value),
+                _ => None,
+            }
+        })
+    }
+
+    /// The given word, without recourse to the default.
+    pub fn choice_if_given(&self, path: &str) -> Option<&'static str> {
+        self.given_choice(path)
+    }
+
+    fn required_choice(&self, path: &str) -> Result<&'static str, SceneError> {
+        self.given_choice(path).ok_or_else(|| self.missing(path, ""))
+    }
+
+    /// Notes that the key table's default of `path` is in use.
+    pub fn note_default(&mut self, path: &str) {
+        if let Some((_, key)) = keys::find(path)
+            && let Need::Default { value, reason } = key.need
+        {
+            self.note(path, value, reason);
+        }
+    }
+
+    pub fn note(&mut self, key: &str, value: &str, reason: &str) {
+        self.defaults_used.push(DefaultUsed {
+            key: key.to_string(),
+            value: value.to_string(),
+            reason: reason.to_string(),
+        });
+    }
+
+    pub fn missing(&self, path: &str, because: &str) -> SceneError {
+        let example = keys::find(path).map(|(_, key)| {
+            let table = self.document.shown(key.table(), self.document.is_named(path));
+            format!("`{} = {}`{}", key.name(), key.example(), below(&table))
+        });
+        let problem =
+            Problem::Missing { because: because.to_string(), example: example.unwrap_or_default() };
+        self.document.error(path, problem)
+    }
+
+    fn material(&mut self, table: &str) -> Material {
+        let paths = ["youngs_modulus", "poisson_ratio", "density"].map(|k| format!("{table}.{k}"));
+        if paths.iter().any(|path| self.is_given(path)) {
+            let [modulus, poisson, density] = paths;
+            return Material {
+                youngs_modulus: self.number(&modulus).unwrap_or(Material::STEEL.youngs_modulus),
+                poisson_ratio: self.number(&poisson).unwrap_or(Material::STEEL.poisson_ratio),
+                density: self.number(&density).unwrap_or(Material::STEEL.density),
+            };
+        }
+        self.note(
+            table,
+            "youngs_modulus 210 GPa, poisson_ratio 0.3, density 7850 kg/m^3",
+            "bearing steel",
+        );
+        Material::STEEL
+    }
+
+    /// Load or given motion of the five coordinates of a race.
+    pub fn drives(&mut self, race: &str, ball_radius: f64) -> Result<[Drive; 5], SceneError> {
+        let mut drives = [const { Drive::Load(Profile::ZERO) }; 5];
+        for (drive, name) in drives.iter_mut().zip(COORDINATE_NAMES) {
+            let table = format!("{race}.{name}");
+            let (load, held, zero) = if name.starts_with("tilt") {
+                ("moment", "tilt", "{ moment = \"0 N m\" }")
+            } else {
+                ("load", "displacement", "{ load = \"0 N\" }")
+            };
+            let held = format!("{table}.{held}");
+            if let Some(load) = self.profile(&format!("{table}.{load}")) {
+                *drive = Drive::Load(load);
+            } else if let Some(motion) = self.profile(&held) {
+                self.limit_displacement(&held, profile::largest(&motion), ball_radius)?;
+                *drive = Drive::Motion(motion);
+            } else {
+                self.note(&table, zero, "the coordinate is free and unloaded");
+            }
+        }
+        Ok(drives)
+    }
+
+    /// Where the outer race is, or starts.
+    fn outer_race(&mut self, ball_radius: f64) -> Result<[f64; 5], SceneError> {
+        let mut position = [0.0; 5];
+        for (value, name) in position.iter_mut().zip(COORDINATE_NAMES) {
+            let path = format!("outer_race.{name}");
+            let held = if name.starts_with("tilt") { "tilt" } else { "displacement" };
+            if let Some(motion) = self.profile(&format!("{path}.{held}")) {
+                *value = motion.value(0.0);
+            } else {
+                *value = self.number(&path).unwrap_or(0.0);
+                self.limit_displacement(&path, *value, ball_radius)?;
+            }
+        }
+        Ok(position)
+    }
+
+    /// Tilts have their range in the key table; displacements are measured by the ball.
+    fn limit_displacement(&self, path: &str, value: f64, ball: f64) -> Result<(), SceneError> {
+        if path.contains("tilt") || value.abs() <= ball {
+            return Ok(());
+        }
+        Err(self.document.error(path, Problem::DisplacementTooLarge { displacement: value, ball }))
+    }
+
+    /// Plots of statics and of a run.
+    fn plots(&self) -> (Vec<Plot>, Vec<RunPlot>) {
+        let Some(Checked::Choices(names)) = self.document.value("output.plots") else {
+            return (vec![Plot::LoadZone, Plot::Polar], vec![RunPlot::Orbit, RunPlot::Series]);
+        };
+        let (mut plots, mut run_plots) = (Vec::new(), Vec::new());
+        for name in names {
+            match *name {
+                "load-zone" => plots.push(Plot::LoadZone),
+                "polar" => plots.push(Plot::Polar),
+                "moment-tilt" => plots.push(Plot::MomentTilt),
+                "orbit" => run_plots.push(RunPlot::Orbit),
+                "spectrum" => run_plots.push(RunPlot::Spectrum),
+                "series" => run_plots.push(RunPlot::Series),
+                "run-up" => run_plots.push(RunPlot::RunUp),
+                _ => run_plots.push(RunPlot::SlipSpin),
+            }
+        }
+        (plots, run_plots)
+    }
+}
+
+pub(crate) fn text(document: &Document, path: &str) -> Option<String> {
+    match document.value(path)? {
+        Checked::Text(text) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+pub(crate) fn below(table: &str) -> String {
+    if table.is_empty() { " at the top".to_string() } else { format!(" to [{table}]") }
+}
+
+fn default_number(path: &str) -> Option<f64> {
+    let (_, key) = keys::find(path)?;
+    let Need::Default { value, .. } = key.need else { return None };
+    match key.kind {
+        Kind::Quantity(dimension, _) | Kind::Profile(dimension, _) => {
+            parse_quantity(value, dimension).ok().map(|quantity| quantity.si)
+        }
+        _ => parse_number(value).ok(),
+    }
+}

@@ -1,0 +1,302 @@
+//! The cage: its sizes, and the rigid body it makes in a run.
+
+use crate::assembly::loads::CageBody;
+use crate::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
+use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::bearing::Reader;
+use crate::scene::resolve::dynamics::{check_inertia, millimetres};
+use crate::scene::resolve::resolved::{Cage, CageInRun, Dimensions};
+use crate::scene::text::value::Checked;
+use std::f64::consts::PI;
+
+/// The cage as far as it is given.
+pub(crate) fn cage(
+    reader: &Reader,
+    geometry: &BearingGeometry,
+    sizes: &Dimensions,
+) -> Result<Option<Cage>, SceneError> {
+    let guidance = reader.choice_if_given("bearing.cage.guidance").map(|word| match word {
+        "outer-race" => Guidance::OuterRace,
+        "inner-race" => Guidance::InnerRace,
+        _ => Guidance::Balls,
+    });
+    let cage = Cage {
+        pocket_radius: reader.given_number("bearing.cage.pocket_radius"),
+        inner_radius: reader.given_number("bearing.cage.inner_radius"),
+        outer_radius: reader.given_number("bearing.cage.outer_radius"),
+        race_clearance: reader.given_number("bearing.cage.race_clearance"),
+        mass: reader.given_number("bearing.cage.mass"),
+        guidance,
+    };
+    if cage == Cage::default() {
+        return Ok(None);
+    }
+    if let Some(pocket) = cage.pocket_radius
+        && pocket < geometry.ball_radius
+    {
+        let problem = Problem::BallExceedsPocket { pocket, ball: geometry.ball_radius };
+        return Err(reader.document.error("bearing.cage.pocket_radius", problem));
+    }
+    if let Some(pocket) = cage.pocket_radius {
+        // Half of what there is from pocket to pocket where their centres are.
+        let pitch = reader.given_number("bearing.cage.pocket_pitch_radius");
+        let room =
+            pitch.unwrap_or(geometry.pitch_radius) * libm::sin(PI / geometry.ball_count as f64);
+        if pocket >= room {
+            let problem = Problem::WrongOrder {
+                value: pocket,
+                relation: "less than",
+                other_name: "half the distance between centres of pockets",
+                other: room,
+                advice: "pockets would run into each other, with no bar between them; check radius, not diameter, and the \
+                         number of balls",
+            };
+            return Err(reader.document.error("bearing.cage.pocket_radius", problem));
+        }
+    }
+    if let (Some(inner), Some(outer)) = (cage.inner_radius, cage.outer_radius)
+        && inner >= outer
+    {
+        let problem = Problem::WrongOrder {
+            value: inner,
+            relation: "less than",
+            other_name: "the cage's outer radius",
+            other: outer,
+            advice: "were the two exchanged?",
+        };
+        return Err(reader.document.error("bearing.cage.inner_radius", problem));
+    }
+    hold_against_races(reader, &cage, geometry.pitch_radius, sizes)?;
+    Ok(Some(cage))
+}
+
+/// The cage lies between the races: inside the shoulders where they are given, else inside the
+/// groove bottoms, which no cage can reach; a race that guides it lies its clearance farther.
+fn hold_against_races(
+    reader: &Reader,
+    cage: &Cage,
+    pitch: f64,
+    sizes: &Dimensions,
+) -> Result<(), SceneError> {
+    let shoulder = |race: &str| reader.given_number(&format!("bearing.{race}.shoulder_radius"));
+    let sides = [
+        (
+            "bearing.cage.outer_radius",
+            cage.outer_radius,
+            1.0,
+            shoulder("outer_race"),
+            sizes.outer_race.radius,
+            Guidance::OuterRace,
+            ["less than", "the outer race's shoulder radius", "the outer race's groove radius"],
+        ),
+        (
+            "bearing.cage.inner_radius",
+            cage.inner_radius,
+            -1.0,
+            shoulder("inner_race"),
+            sizes.inner_race.radius,
+            Guidance::InnerRace,
+            ["more than", "the inner race's shoulder radius", "the inner race's groove radius"],
+        ),
+    ];
+    for (key, radius, outward, shoulder, bottom, guide, [relation, of_shoulder, of_bottom]) in sides
+    {
+        let Some(radius) = radius else { continue };
+        // A shoulder on the wrong side of the balls is a mistake of its own.
+        let shoulder = shoulder.filter(|shoulder| (shoulder - pitch) * outward > 0.0);
+        let (other_name, other) = match shoulder {
+            Some(shoulder) => (of_shoulder, shoulder),
+            None => (of_bottom, bottom),
+        };
+        let overlaps = |value: f64, other: f64| (other - value) * outward <= 0.0;
+        if overlaps(radius, other) {
+            let advice = "a cage lies between the races; check radius, not diameter, and unit";
+            let problem =
+                Problem::WrongOrder { value: radius, relation, other_name, other, advice };
+            return Err(reader.document.error(key, problem));
+        }
+        // The race's surface that guides it.
+        let land = radius + outward * cage.race_clearance.unwrap_or(0.0);
+        if cage.guidance == Some(guide) && overlaps(land, bottom) {
+            let advice = "this is the cage's radius and race_clearance together, where the race \
+                          guides it; a race ends at its groove";
+            let value = land;
+            let problem = Problem::WrongOrder {
+                value,
+                relation,
+                other_name: of_bottom,
+                other: bottom,
+                advice,
+            };
+            return Err(reader.document.error("bearing.cage.race_clearance", problem));
+        }
+    }
+    Ok(())
+}
+
+/// The cage of a run, or why there is none.
+pub(crate) fn in_run(
+    reader: &mut Reader,
+    geometry: &BearingGeometry,
+    cage: Option<&Cage>,
+) -> Result<CageInRun, SceneError> {
+    let given_inertia = given_inertia(reader)?;
+    let force = force(reader)?;
+    let pitch = pocket_pitch(reader, geometry)?;
+    let Some(cage) = cage else {
+        return Ok(CageInRun::LeftOut("the scene has no cage".to_string()));
+    };
+    let needs_clearance = cage.guidance.is_some_and(|guidance| guidance != Guidance::Balls);
+    let missing: Vec<&str> = [
+        ("pocket_radius", cage.pocket_radius.is_none()),
+        ("inner_radius", cage.inner_radius.is_none()),
+        ("outer_radius", cage.outer_radius.is_none()),
+        ("mass", cage.mass.is_none()),
+        ("guidance", cage.guidance.is_none()),
+        ("race_clearance", needs_clearance && cage.race_clearance.is_none()),
+    ]
+    .into_iter()
+    .filter_map(|(name, missing)| missing.then_some(name))
+    .collect();
+    let (Some(pocket_radius), Some(inner), Some(outer), Some(mass), Some(guidance), true) = (
+        cage.pocket_radius,
+        cage.inner_radius,
+        cage.outer_radius,
+        cage.mass,
+        cage.guidance,
+        missing.is_empty(),
+    ) else {
+        let reason = format!("the scene gives no {} of the cage", missing.join(", "));
+        return Ok(CageInRun::LeftOut(reason));
+    };
+    let density = reader.number("bearing.cage.density").unwrap_or(7850.0);
+    let length = match reader.given_number("bearing.cage.length") {
+        Some(length) => length,
+        None => {
+            let pockets = geometry.ball_count as f64 * pocket_volume(pocket_radius, inner, outer);
+            let length = (mass / density + pockets) / (PI * (outer * outer - inner * inner));
+            let reason = "follows from the cage's mass, density, radii and pockets";
+            reader.note("bearing.cage.length", &millimetres(length), reason);
+            length
+        }
+    };
+    let [axial, transverse] = given_inertia.unwrap_or_else(|| {
+        let full = hollow_cylinder(inner, outer, length, density);
+        let value = format!(
+            "axial {:.4e} kg m^2, transverse {:.4e} kg m^2",
+            full.axial / full.mass * mass,
+            full.transverse / full.mass * mass
+        );
+        reader.note("bearing.cage.inertia", &value, "a hollow cylinder of the cage's mass");
+        [full.axial / full.mass * mass, full.transverse / full.mass * mass]
+    });
+    let pocket = match reader.choice("bearing.cage.pocket") {
+        Some("spherical") => Pocket::Spherical,
+        _ => Pocket::Cylindrical,
+    };
+    let contacts = CageContacts {
+        pocket,
+        pocket_radius,
+        pocket_pitch_radius: pitch.unwrap_or_else(|| {
+            let reason = "the pockets lie on the bearing's pitch circle";
+            let value = millimetres(geometry.pitch_radius);
+            reader.note("bearing.cage.pocket_pitch_radius", &value, reason);
+            geometry.pitch_radius
+        }),
+        guidance,
+        ring: [inner, outer],
+        guide_radius: if guidance == Guidance::InnerRace { inner } else { outer },
+        race_clearance: cage.race_clearance.unwrap_or(0.0),
+        length,
+        force: force.unwrap_or_else(|| {
+            let reason =
+                "the source's stiffness (5.8), which it has at each node of a flexible cage";
+            reader.note("bearing.cage.contact.stiffness", "2e8 N/m", reason);
+            CageForce::Penalty { stiffness: 2e8 }
+        }),
+        friction: reader.number("bearing.cage.friction").unwrap_or(0.1),
+        regularisation_speed: reader.number("bearing.cage.regularisation_speed").unwrap_or(0.01),
+    };
+    Ok(CageInRun::Body(CageBody { inertia: Inertia { mass, axial, transverse }, contacts }))
+}
+
+/// Volume that one round pocket with a radial axis takes out of the ring: the integral of
+/// sqrt(R_o² - y²) - sqrt(R_i² - y²) over the pocket's circle.
+fn pocket_volume(pocket: f64, inner: f64, outer: f64) -> f64 {
+    // Chebyshev quadrature of the second kind, whose weight is the circle's width at y.
+    const NODES: usize = 12;
+    let wall =
+        |y: f64| (outer * outer - y * y).max(0.0).sqrt() - (inner * inner - y * y).max(0.0).sqrt();
+    let sum: f64 = (1..=NODES)
+        .map(|k| {
+            let (sin, cos) = libm::sincos(PI * k as f64 / (NODES + 1) as f64);
+            sin * sin * wall(pocket * cos)
+        })
+        .sum();
+    2.0 * pocket * pocket * sum * PI / (NODES + 1) as f64
+}
+
+/// Axial and transverse moment, if given.
+fn given_inertia(reader: &Reader) -> Result<Option<[f64; 2]>, SceneError> {
+    let keys = ["bearing.cage.inertia.axial", "bearing.cage.inertia.transverse"];
+    if !keys.iter().any(|key| reader.is_given(key)) {
+        return Ok(None);
+    }
+    let because = " beside the other moment of inertia";
+    let axial = reader.required_number(keys[0], because)?;
+    let transverse = reader.required_number(keys[1], because)?;
+    check_inertia(axial, transverse).map_err(|problem| reader.document.error(keys[0], problem))?;
+    Ok(Some([axial, transverse]))
+}
+
+/// The contact law, if its stiffness is given.
+fn force(reader: &mut Reader) -> Result<Option<CageForce>, SceneError> {
+    let path = "bearing.cage.contact.stiffness";
+    let hertz = reader.choice_if_given("bearing.cage.contact.law") == Some("hertz");
+    match (reader.document.value(path), hertz) {
+        (None, false) => Ok(None),
+        (None, true) => {
+            let because = " with `law = \"hertz\"`".to_string();
+            let example = "`stiffness = \"1e10 N/m^1.5\"` to [bearing.cage.contact]".to_string();
+            Err(reader.document.error(path, Problem::Missing { because, example }))
+        }
+        (Some(Checked::Either(0, stiffness)), false) => {
+            Ok(Some(CageForce::Penalty { stiffness: *stiffness }))
+        }
+        (Some(Checked::Either(1, stiffness)), true) => {
+            Ok(Some(CageForce::Hertz { stiffness: *stiffness }))
+        }
+        (Some(_), _) => {
+            let (reason, example) = if hertz {
+                ("`hertz` takes a stiffness in N/m^1.5", "1e10 N/m^1.5")
+            } else {
+                ("`penalty` takes a stiffness in N/m", "2e8 N/m")
+            };
+            let advice = format!("write stiffness = \"{example}\", or choose the other law");
+            Err(reader.document.refused(path, reason, advice))
+        }
+    }
+}
+
+/// Radius of the pockets' centres, if given: balls must reach them.
+fn pocket_pitch(reader: &Reader, geometry: &BearingGeometry) -> Result<Option<f64>, SceneError> {
+    let path = "bearing.cage.pocket_pitch_radius";
+    let Some(value) = reader.given_number(path) else { return Ok(None) };
+    let (low, high) = (
+        geometry.pitch_radius - geometry.ball_radius,
+        geometry.pitch_radius + geometry.ball_radius,
+    );
+    if value > low && value < high {
+        return Ok(Some(value));
+    }
+    let (relation, other_name, other) = if value <= low {
+        ("more than", "the pitch radius less a ball radius", low)
+    } else {
+        ("less than", "the pitch radius plus a ball radius", high)
+    };
+    let advice = "leave it out, the pockets then lie on the pitch circle";
+    let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
+    Err(reader.document.error(path, problem))
+}

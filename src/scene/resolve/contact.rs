@@ -1,0 +1,236 @@
+//! Traction and damping between balls and races, dents in races, friction between balls.
+
+use crate::ch2_housing::bearing::contact::ContactDamping;
+use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use crate::ch3_bushing::dent::{Dent, DentShape};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::bearing::Reader;
+use crate::scene::resolve::solid::{item_number, missing};
+use crate::scene::text::items::ItemRef;
+use crate::scene::text::units::plain;
+use crate::scene::text::value::Checked;
+
+/// Keys that belong to some laws only.
+const TRACTION_KEYS: &[(&str, &[&str])] = &[
+    ("traction.coefficient", &["constant"]),
+    ("traction.regularisation_speed", &["constant"]),
+    ("traction.b", &["slide-to-roll", "slip-speed"]),
+    ("traction.c", &["slide-to-roll", "slip-speed"]),
+    ("traction.d", &["slide-to-roll", "slip-speed"]),
+    ("traction.entrainment_floor", &["slide-to-roll"]),
+    ("traction.points", &["table"]),
+];
+const DAMPING_KEYS: &[(&str, &[&str])] = &[
+    ("contact_damping.alpha", &["hunt-crossley"]),
+    ("contact_damping.restitution", &["lankarani-nikravesh"]),
+    ("contact_damping.slowest", &["lankarani-nikravesh"]),
+];
+
+/// A key of another law or method than the chosen one would have no effect.
+pub(crate) fn refuse_strangers(
+    reader: &Reader,
+    (what, chosen): (&str, &str),
+    keys: &[(&str, &[&str])],
+) -> Result<(), SceneError> {
+    for (key, users) in keys {
+        if chosen != "none" && reader.is_given(key) && !users.contains(&chosen) {
+            let own = users.iter().map(|user| format!("`{what} = \"{user}\"`"));
+            let own: Vec<String> = own.collect();
+            let advice = format!("leave it out, or choose {}", own.join(" or "));
+            let reason = match what {
+                "law" => "the chosen law does not use it",
+                _ => "the chosen method does not use it",
+            };
+            return Err(reader.document.refused(key, reason, advice));
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
+    let law = reader.choice("traction.law").unwrap_or("slide-to-roll");
+    refuse_strangers(reader, ("law", law), TRACTION_KEYS)?;
+    let because = format!(" with `law = \"{law}\"`");
+    Ok(match law {
+        "constant" => TractionLaw::Constant {
+            coefficient: reader.required_number("traction.coefficient", &because)?,
+            regularisation_speed: reader
+                .required_number("traction.regularisation_speed", &because)?,
+        },
+        "slide-to-roll" => TractionLaw::SlideToRoll {
+            curve: curve(
+                reader,
+                0,
+                "this curve is over the slide-to-roll ratio, a plain number",
+                "22.28",
+            )?,
+            entrainment_floor: reader.number("traction.entrainment_floor").unwrap_or(0.01),
+        },
+        "slip-speed" => TractionLaw::SlipSpeed {
+            curve: curve(reader, 1, "this curve is over the sliding speed, in s/m", "\"20 s/m\"")?,
+        },
+        "table" => TractionLaw::Table { points: points(reader, &because)? },
+        _ => TractionLaw::None,
+    })
+}
+
+/// The exponential curve; its slopes must be of kind number `kind` of their key.
+fn curve(
+    reader: &mut Reader,
+    kind: usize,
+    unit: &'static str,
+    example: &str,
+) -> Result<ExponentialCurve, SceneError> {
+    let common = ExponentialCurve::BOUNDARY;
+    let mut values = [common.b, common.c, common.d];
+    for (value, path) in values.iter_mut().zip(["traction.b", "traction.c", "traction.d"]) {
+        match reader.document.value(path) {
+            Some(Checked::Number(given)) => *value = *given,
+            Some(Checked::Either(index, given)) if *index == kind => *value = *given,
+            Some(_) => {
+                let name = path.rsplit('.').next().unwrap_or(path);
+                let advice = format!("write {name} = {example}");
+                return Err(reader.document.refused(path, unit, advice));
+            }
+            None if kind == 1 => {
+                return Err(
+                    reader.missing(path, " with `law = \"slip-speed\"`, whose b and c are in s/m")
+                );
+            }
+            None => {
+                let reason = "common boundary-lubrication set; the source's curve is not printed";
+                reader.note(path, &crate::scene::text::units::plain(*value), reason);
+            }
+        }
+    }
+    let [b, c, d] = values;
+    let curve = ExponentialCurve { b, c, d };
+    // dκ/dx = 0 at x = (1 + c d/b)/c.
+    let peak = if b > 0.0 { curve.coefficient((1.0 + c * d / b) / c).max(d) } else { d };
+    if peak <= 2.0 {
+        Ok(curve)
+    } else {
+        Err(reader.document.error("traction.b", Problem::FrictionTooLarge { peak }))
+    }
+}
+
+fn points(reader: &Reader, because: &str) -> Result<Vec<[f64; 2]>, SceneError> {
+    let path = "traction.points";
+    let Some(Checked::Curve(points)) = reader.document.value(path) else {
+        return Err(reader.missing(path, because));
+    };
+    if points.first().is_some_and(|first| first[0] == 0.0 && first[1] != 0.0) {
+        let reason = "friction at rest has no direction";
+        let advice = "begin with [\"0 m/s\", 0.0] or with a sliding speed above 0";
+        return Err(reader.document.refused(path, reason, advice));
+    }
+    Ok(points.clone())
+}
+
+pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError> {
+    let law = reader.choice("contact_damping.law").unwrap_or("none");
+    refuse_strangers(reader, ("law", law), DAMPING_KEYS)?;
+    let because = format!(" with `law = \"{law}\"`");
+    Ok(match law {
+        "hunt-crossley" => ContactDamping::HuntCrossley {
+            alpha: reader.required_number("contact_damping.alpha", &because)?,
+        },
+        "lankarani-nikravesh" => ContactDamping::LankaraniNikravesh {
+            restitution: reader.required_number("contact_damping.restitution", &because)?,
+            slowest: reader.number("contact_damping.slowest").unwrap_or(1e-3),
+        },
+        _ => ContactDamping::None,
+    })
+}
+
+/// Friction coefficient and regularisation speed (m/s) between balls; defaults count as used where
+/// balls can meet.
+pub(crate) fn ball_friction(
+    reader: &mut Reader,
+    balls_meet: bool,
+) -> Result<Option<[f64; 2]>, SceneError> {
+    let given = reader.choice_if_given("ball_contact.law");
+    if given == Some("none") {
+        return Ok(None);
+    }
+    let [friction, speed] = ["ball_contact.friction", "ball_contact.regularisation_speed"];
+    if !balls_meet {
+        let value = |path, usual| reader.given_number(path).unwrap_or(usual);
+        return Ok(Some([value(friction, 0.1), value(speed, 0.01)]));
+    }
+    if given.is_none() {
+        reader.note_default("ball_contact.law");
+    }
+    Ok(Some([reader.number(friction).unwrap_or(0.1), reader.number(speed).unwrap_or(0.01)]))
+}
+
+/// Depth of a dent whose scene gives none, in parts of its diameter: balls of usual bearings do not reach its bottom.
+const USUAL_DEPTH: f64 = 0.05;
+/// Width of a shoulder in parts of the dent's diameter.
+const USUAL_WIDTH: f64 = 0.25;
+/// A table of the law has cells and intervals for dents of the size of contacts.
+const WIDEST: f64 = 0.5;
+
+/// Dents in the races.
+pub(crate) fn dents(
+    reader: &mut Reader,
+    geometry: &BearingGeometry,
+) -> Result<Vec<Dent>, SceneError> {
+    let document = reader.document;
+    document.items("bearing.dent").map(|item| dent(reader, geometry, item)).collect()
+}
+
+fn dent(
+    reader: &mut Reader,
+    geometry: &BearingGeometry,
+    item: ItemRef,
+) -> Result<Dent, SceneError> {
+    let required = |name: &str, example: &str| {
+        item_number(item, name).ok_or_else(|| missing(item, name, "", example))
+    };
+    let side = match item.value("race") {
+        Some(Checked::Choice("inner")) => 0,
+        Some(Checked::Choice(_)) => 1,
+        _ => return Err(missing(item, "race", "", "race = \"outer\"")),
+    };
+    let (angle, diameter) =
+        (required("angle", "angle = \"270 deg\"")?, required("diameter", "diameter = \"500 um\"")?);
+    let widest = WIDEST * geometry.ball_radius;
+    if diameter > widest {
+        let reason = format!(
+            "a dent wider than {} mm, half the ball's radius, is no longer one",
+            plain(1e3 * widest)
+        );
+        let advice =
+            "its law is that of a surface that is flat but for the dent; give a smaller diameter";
+        return Err(item.error("diameter", Problem::refused(reason, advice)));
+    }
+    let depth = item_number(item, "depth").unwrap_or_else(|| {
+        let depth = USUAL_DEPTH * diameter;
+        let reason = "a twentieth of the diameter; the source gives none";
+        reader.note("bearing.dent.depth", &format!("{} um", plain(1e6 * depth)), reason);
+        depth
+    });
+    let shoulder_height = item_number(item, "shoulder_height").unwrap_or_else(|| {
+        reader.note_default("bearing.dent.shoulder_height");
+        0.0
+    });
+    let shoulder_width = match item_number(item, "shoulder_width") {
+        Some(width) => width,
+        None if shoulder_height > 0.0 => {
+            let width = USUAL_WIDTH * diameter;
+            let reason = "a quarter of the diameter";
+            reader.note(
+                "bearing.dent.shoulder_width",
+                &format!("{} um", plain(1e6 * width)),
+                reason,
+            );
+            width
+        }
+        None => 0.0,
+    };
+    let shape = DentShape { diameter, depth, shoulder_height, shoulder_width };
+    let groove_angle = item_number(item, "groove_angle").unwrap_or(0.0);
+    Ok(Dent { shape, side, angle, groove_angle })
+}

@@ -1,0 +1,477 @@
+//! What only a run needs: bodies of the races, loads that turn, steps.
+
+use crate::assembly::channels::ChannelGroup;
+use crate::assembly::lists::gap_in_pockets;
+use crate::assembly::loads::{Drive, DrivenBody, RotatingLoad, Rotation};
+use crate::ch2_housing::bearing::geometry::{BearingGeometry, Material};
+use crate::ch2_housing::bearing::inertia::{Inertia, grooved_ring};
+use crate::equilibrium::statics::COORDINATE_NAMES;
+use crate::motion::simulation::{Integrator, RunOptions, Start, Stepping};
+use crate::numeric::profile::Profile;
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::bearing::Reader;
+use crate::scene::resolve::resolved::{
+    Cage, CageInRun, Dimensions, Dynamics, RunSettings, Shoulder,
+};
+use crate::scene::resolve::{cage, contact};
+use crate::scene::text::units::plain;
+use crate::scene::text::value::Checked;
+
+/// Parts that are resolved already.
+pub(crate) struct Parts<'p> {
+    pub geometry: &'p BearingGeometry,
+    pub dimensions: &'p Dimensions,
+    pub inner_material: &'p Material,
+    pub outer_material: &'p Material,
+    pub cage: Option<&'p Cage>,
+}
+
+pub(crate) fn dynamics(
+    reader: &mut Reader,
+    parts: &Parts,
+    inner_drives: [Drive; 5],
+) -> Result<Dynamics, SceneError> {
+    let inner = DrivenBody {
+        inertia: race_inertia(reader, parts, &INNER)?,
+        drives: inner_drives,
+        rotation: rotation(reader, "inner_race"),
+        foundation_stiffness: [0.0; 5],
+        foundation_damping: [0.0; 5],
+    };
+    let [of_inner, of_outer] = [&INNER, &OUTER].map(|side| {
+        let given = shoulder(reader, parts, side, &format!("{}.shoulder_radius", side.geometry))?;
+        let radius = given.unwrap_or_else(|| usual_shoulder(parts.dimensions, side));
+        Ok(Shoulder { radius, given: given.is_some() })
+    });
+    let shoulders = [of_inner?, of_outer?];
+    let outer = outer_race(reader, parts)?;
+    let cage = cage::in_run(reader, parts.geometry, parts.cage)?;
+    let balls_meet = match &cage {
+        CageInRun::Body(body) => gap_in_pockets(parts.geometry, &body.contacts).is_none(),
+        CageInRun::LeftOut(_) => true,
+    };
+    let unbalance = reader.given_number("inner_race.unbalance").unwrap_or(0.0);
+    check_unbalance(&inner, unbalance)
+        .map_err(|problem| reader.document.error("inner_race.unbalance", problem))?;
+    Ok(Dynamics {
+        inner,
+        shoulders,
+        outer,
+        cage,
+        rotating_load: rotating_load(reader, "inner_race")?,
+        unbalance,
+        traction: contact::traction(reader)?,
+        // Checked by the key table: 1 to 201.
+        slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
+        // 1 to 9.
+        points_across: reader.number("traction.points_across").unwrap_or(1.0) as usize,
+        heathcote: heathcote(reader),
+        damping: contact::damping(reader)?,
+        ball_friction: contact::ball_friction(reader, balls_meet)?,
+        dents: contact::dents(reader, parts.geometry)?,
+        run: run(reader)?,
+        plots: Vec::new(),
+        defaults_used: Vec::new(),
+    })
+}
+
+/// Speed or torque of the body of a table.
+pub(crate) fn rotation(reader: &mut Reader, table: &str) -> Rotation {
+    if let Some(torque) = reader.profile(&format!("{table}.torque")) {
+        return Rotation::Torque(torque);
+    }
+    let speed = format!("{table}.speed");
+    Rotation::Speed(reader.profile(&speed).unwrap_or_else(|| {
+        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given");
+        Profile::ZERO
+    }))
+}
+
+/// Springs (`stiffness`) or dashpots (`damping`) between the body of a table and the ground.
+pub(crate) fn foundation(reader: &Reader, table: &str, what: &str) -> [f64; 5] {
+    COORDINATE_NAMES.map(|name| {
+        let path = format!("{table}.foundation.{what}.{name}");
+        reader.given_number(&path).unwrap_or(0.0)
+    })
+}
+
+fn heathcote(reader: &mut Reader) -> bool {
+    match reader.document.value("traction.heathcote") {
+        Some(Checked::Boolean(given)) => *given,
+        _ => {
+            reader.note_default("traction.heathcote");
+            false
+        }
+    }
+}
+
+pub(crate) fn rotating_load(
+    reader: &mut Reader,
+    table: &str,
+) -> Result<Option<RotatingLoad>, SceneError> {
+    let [force, speed, phase] =
+        &["force", "speed", "phase"].map(|key| format!("{table}.rotating_load.{key}"));
+    if ![force, speed, phase].iter().any(|key| reader.is_given(key)) {
+        return Ok(None);
+    }
+    let Some(profile) = reader.profile(force) else {
+        return Err(reader.missing(force, ""));
+    };
+    let Some(turning) = reader.profile(speed) else {
+        return Err(reader.missing(speed, ""));
+    };
+    Ok(Some(RotatingLoad {
+        force: profile,
+        speed: turning,
+        phase: reader.number(phase).unwrap_or(0.0),
+    }))
+}
+
+fn outer_race(reader: &mut Reader, parts: &Parts) -> Result<Option<DrivenBody>, SceneError> {
+    let motion = reader.choice("outer_race.motion").unwrap_or("fixed");
+    if motion == "fixed" {
+        refuse_motion(reader)?;
+        return Ok(None);
+    }
+    let foundation_stiffness = foundation(reader, "outer_race", "stiffness");
+    let foundation_damping = foundation(reader, "outer_race", "damping");
+    if foundation_stiffness == [0.0; 5] {
+        reader.note("outer_race.foundation", "none", "no spring holds the moving outer race");
+    }
+    Ok(Some(DrivenBody {
+        inertia: race_inertia(reader, parts, &OUTER)?,
+        drives: reader.drives("outer_race", parts.geometry.ball_radius)?,
+        rotation: outer_rotation(reader, motion)?,
+        foundation_stiffness,
+        foundation_damping,
+    }))
+}
+
+/// A race with five coordinates turns as it is told, one with six as moments turn it.
+fn outer_rotation(reader: &Reader, motion: &str) -> Result<Rotation, SceneError> {
+    let (own, other) = match motion {
+        "5-dof" => ("outer_race.speed", "outer_race.torque"),
+        _ => ("outer_race.torque", "outer_race.speed"),
+    };
+    if reader.is_given(other) {
+        let reason = "6-dof is turned by a torque, 5-dof at a speed";
+        let advice =
+            format!("write {} instead, or the other motion", own.replace("outer_race.", ""));
+        return Err(reader.document.refused(other, reason, advice));
+    }
+    let profile = reader.profile(own).unwrap_or(Profile::ZERO);
+    Ok(if motion == "5-dof" { Rotation::Speed(profile) } else { Rotation::Torque(profile) })
+}
+
+/// Keys that do nothing to a fixed race are refused, so that nobody waits for their effect.
+fn refuse_motion(reader: &Reader) -> Result<(), SceneError> {
+    let mut keys = Vec::new();
+    for name in COORDINATE_NAMES {
+        let (load, held) =
+            if name.starts_with("tilt") { ("moment", "tilt") } else { ("load", "displacement") };
+        keys.push(format!("outer_race.{name}.{load}"));
+        let held = format!("outer_race.{name}.{held}");
+        if matches!(reader.document.value(&held), Some(Checked::Profile(_))) {
+            keys.push(held);
+        }
+        keys.push(format!("outer_race.foundation.stiffness.{name}"));
+        keys.push(format!("outer_race.foundation.damping.{name}"));
+    }
+    for name in ["speed", "torque", "inertia.mass", "inertia.axial", "inertia.transverse"] {
+        keys.push(format!("outer_race.{name}"));
+    }
+    match keys.iter().find(|key| reader.is_given(key)) {
+        None => Ok(()),
+        Some(key) => {
+            let reason = "the outer race is fixed";
+            let advice = "write motion = \"5-dof\" in [outer_race], or leave this out";
+            Err(reader.document.refused(key, reason, advice))
+        }
+    }
+}
+
+/// Where the keys of a race stand, and on which side of its groove the material lies.
+struct Side {
+    table: &'static str,
+    geometry: &'static str,
+    plain: &'static str,
+    /// +1: material inside the groove.
+    sign: f64,
+}
+
+const INNER: Side = Side {
+    table: "inner_race",
+    geometry: "bearing.inner_race",
+    plain: "bearing.inner_race.bore_radius",
+    sign: 1.0,
+};
+const OUTER: Side = Side {
+    table: "outer_race",
+    geometry: "bearing.outer_race",
+    plain: "bearing.outer_race.outer_radius",
+    sign: -1.0,
+};
+
+/// Sizes that no table states, as parts of the ball diameter. Wall and length are those of
+/// Table 2.2: 3.574 mm and 20 mm with balls of 11.91 mm.
+const WALL: f64 = 0.30;
+const LENGTH: f64 = 1.68;
+/// Common height of a deep-groove bearing's shoulders.
+const SHOULDER: f64 = 0.20;
+
+/// Given, or a ring with a groove of the race's sizes.
+fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inertia, SceneError> {
+    let inner = side.sign > 0.0;
+    let added =
+        if inner { reader.given_number("inner_race.added_mass").unwrap_or(0.0) } else { 0.0 };
+    let shoulder_key = format!("{}.shoulder_radius", side.geometry);
+    let given_shoulder = shoulder(reader, parts, side, &shoulder_key)?;
+    let keys = ["mass", "axial", "transverse"].map(|key| format!("{}.inertia.{key}", side.table));
+    if keys.iter().any(|key| reader.is_given(key)) {
+        let because = " beside the other entries of `inertia`";
+        let [mass, axial, transverse] = keys.each_ref().map(|k| reader.required_number(k, because));
+        let inertia = Inertia { mass: mass? + added, axial: axial?, transverse: transverse? };
+        check_inertia(inertia.axial, inertia.transverse)
+            .map_err(|problem| reader.document.error(&keys[1], problem))?;
+        return Ok(inertia);
+    }
+    let sizes = parts.dimensions;
+    let (race, raceway, given_plain, density) = if inner {
+        let density = parts.inner_material.density;
+        (&sizes.inner_race, &parts.geometry.inner, sizes.bore_radius, density)
+    } else {
+        let density = parts.outer_material.density;
+        (&sizes.outer_race, &parts.geometry.outer, sizes.outer_radius, density)
+    };
+    let diameter = 2.0 * sizes.nominal_ball_radius;
+    let plain_radius = given_plain.unwrap_or_else(|| {
+        let radius = (race.radius - side.sign * WALL * diameter).max(0.5 * race.radius);
+        let reason = "wall of 0.3 ball diameters behind the groove, as the outer race of Table 2.2";
+        reader.note(side.plain, &millimetres(radius), reason);
+        radius
+    });
+    let land = given_shoulder.unwrap_or_else(|| {
+        let radius = usual_shoulder(sizes, side);
+        let reason = "shoulders as high as 20 % of the ball diameter";
+        reader.note(&shoulder_key, &millimetres(radius), reason);
+        radius
+    });
+    let length = sizes.length.unwrap_or_else(|| {
+        let length = LENGTH * diameter;
+        let reason = "1.68 ball diameters, as in Table 2.2";
+        reader.note("bearing.length", &millimetres(length), reason);
+        length
+    });
+    let ring = grooved_ring(
+        plain_radius,
+        land,
+        raceway.centre_radius,
+        raceway.groove_radius,
+        length,
+        density,
+    );
+    let value = format!(
+        "mass {:.4e} kg, axial {:.4e} kg m^2, transverse {:.4e} kg m^2",
+        ring.mass, ring.axial, ring.transverse
+    );
+    reader.note(&format!("{}.inertia", side.table), &value, "a grooved ring of the race's sizes");
+    Ok(Inertia { mass: ring.mass + added, ..ring })
+}
+
+fn usual_shoulder(sizes: &Dimensions, side: &Side) -> f64 {
+    let race = if side.sign > 0.0 { &sizes.inner_race } else { &sizes.outer_race };
+    race.radius + side.sign * SHOULDER * 2.0 * sizes.nominal_ball_radius
+}
+
+/// The given shoulder radius: beyond the groove bottom, short of the balls' centres.
+fn shoulder(
+    reader: &Reader,
+    parts: &Parts,
+    side: &Side,
+    key: &str,
+) -> Result<Option<f64>, SceneError> {
+    let Some(value) = reader.given_number(key) else { return Ok(None) };
+    let inner = side.sign > 0.0;
+    let sizes = parts.dimensions;
+    let bottom = if inner { sizes.inner_race.radius } else { sizes.outer_race.radius };
+    let pitch = parts.geometry.pitch_radius;
+    let order = |relation, other_name, other| {
+        let advice = "a shoulder stands beside the groove, lower than the balls' centres";
+        let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
+        Err(reader.document.error(key, problem))
+    };
+    let (past_bottom, past_pitch) =
+        if inner { ("more than", "less than") } else { ("less than", "more than") };
+    if (value - bottom) * side.sign <= 0.0 {
+        order(past_bottom, "the groove bottom's radius", bottom)
+    } else if (pitch - value) * side.sign <= 0.0 {
+        order(past_pitch, "the pitch radius", pitch)
+    } else {
+        Ok(Some(value))
+    }
+}
+
+/// No body has I_axial > 2 I_transverse: ∫(y² + z²) ≤ ∫(x² + y²) + ∫(x² + z²). A flat disc has both the same but for rounding.
+pub(crate) fn check_inertia(axial: f64, transverse: f64) -> Result<(), Problem> {
+    match axial <= 2.0 * transverse * (1.0 + 1e-9) {
+        true => Ok(()),
+        false => Err(Problem::ImpossibleInertia { axial, transverse }),
+    }
+}
+
+/// A mass m beside the axis by r, with u = m r, has a moment of inertia m r² = u²/m of its own, which is part of the body's. A given
+/// speed asks for none, and equilibria for no inertia at all.
+pub(crate) fn check_unbalance(race: &DrivenBody, unbalance: f64) -> Result<(), Problem> {
+    let Inertia { mass, axial, .. } = race.inertia;
+    let given = matches!(race.rotation, Rotation::Speed(_)) || mass == 0.0;
+    match given || unbalance * unbalance < mass * axial {
+        true => Ok(()),
+        false => Err(Problem::ImpossibleUnbalance { unbalance, mass, axial }),
+    }
+}
+
+/// A length as it would be written, to six digits.
+pub(crate) fn millimetres(metres: f64) -> String {
+    let rounded: f64 = format!("{:.5e}", metres * 1e3).parse().unwrap_or(metres * 1e3);
+    format!("{} mm", plain(rounded))
+}
+
+fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
+    let Some(end) = reader.given_number("numerics.end") else {
+        return match reader.document.first_below("numerics") {
+            Some(_) => Err(reader.missing("numerics.end", " with a [numerics] table")),
+            None => Ok(None),
+        };
+    };
+    let usual = RunOptions::default();
+    let start = match reader.choice("numerics.start") {
+        Some("nominal") => Start::Nominal,
+        _ => Start::Equilibrium,
+    };
+    let Steps { integrator, stepping, by_plan } = steps(reader)?;
+    let energy_limit = reader.given_number("numerics.energy_limit").unwrap_or_else(|| {
+        let (limit, reason) = match stepping {
+            Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => {
+                (usual.energy_limit, "1 % of the energy turned over")
+            }
+            Stepping::Accuracy(_) => (
+                ENERGY_LIMIT_OF_CONTROL,
+                "error control watches the motion; long steps balance the work of what holds a speed roughly",
+            ),
+        };
+        reader.note("numerics.energy_limit", &plain(limit), reason);
+        limit
+    });
+    let options = RunOptions { start, integrator, stepping, energy_limit, ..usual };
+    let output_interval = within(reader, "numerics.output_interval", end)?.unwrap_or_else(|| {
+        let interval = end / 1000.0;
+        let value = format!("{} s", plain(interval));
+        reader.note("numerics.output_interval", &value, "a thousandth of the run");
+        interval
+    });
+    let window_start = within(reader, "output.window_start", end)?.unwrap_or_else(|| {
+        let start = 0.5 * end;
+        let reason = "means and spectra are taken over the second half of the run";
+        reader.note("output.window_start", &format!("{} s", plain(start)), reason);
+        start
+    });
+    let channels = match reader.document.value("output.channels") {
+        Some(Checked::Choices(names)) => {
+            names.iter().filter_map(|name| ChannelGroup::from_name(name)).collect()
+        }
+        _ => ChannelGroup::DEFAULT.to_vec(),
+    };
+    Ok(Some(RunSettings {
+        options,
+        by_plan,
+        end,
+        output_interval,
+        fields_interval: within(reader, "numerics.fields_interval", end)?,
+        window_start,
+        channels,
+    }))
+}
+
+/// Energy that error control may lose, as a part of the energy turned over: sound runs at an accuracy of
+/// 0.01 lose up to 0.02, and one that makes energy without end comes close to 1.
+const ENERGY_LIMIT_OF_CONTROL: f64 = 0.2;
+
+struct Steps {
+    integrator: Integrator,
+    stepping: Stepping,
+    /// Whether the plan is to choose the integrator.
+    by_plan: bool,
+}
+
+/// Without step and integrator error control, by the method that the plan chooses; a step, or a part of
+/// the largest stable one, is one of rk4.
+fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
+    let [step, fraction, accuracy] = ["step", "step_fraction", "accuracy"]
+        .map(|name| reader.given_number(&format!("numerics.{name}")));
+    let given = match reader.choice_if_given("numerics.integrator") {
+        Some("dormand-prince") => Some(Integrator::DormandPrince),
+        Some("rosenbrock") => Some(Integrator::Rosenbrock),
+        Some(_) => Some(Integrator::RungeKutta),
+        None => None,
+    };
+    // Windows of a housing are shorter than any step that error control would choose.
+    let in_housing = reader.choice_if_given("housing.method") == Some("explicit");
+    let by_steps = step.is_some() || fraction.is_some() || (in_housing && accuracy.is_none());
+    let by_plan = given.is_none() && !by_steps;
+    let integrator = match given {
+        Some(integrator) => integrator,
+        None if by_steps => {
+            let reason = match in_housing {
+                true => "a housing in explicit steps binds them",
+                false => "steps as given, as the source's",
+            };
+            reader.note("numerics.integrator", "rk4", reason);
+            Integrator::RungeKutta
+        }
+        // Until the plan has looked.
+        None => Integrator::Rosenbrock,
+    };
+    let estimates = integrator != Integrator::RungeKutta;
+    let refuse =
+        |key: &str, reason, advice: &str| Err(reader.document.refused(key, reason, advice));
+    if accuracy.is_some() && !estimates {
+        let reason = "the integrator rk4 has no estimate of its error";
+        let advice =
+            "leave the integrator out, write \"rosenbrock\" or \"dormand-prince\", or give a step";
+        return refuse("numerics.accuracy", reason, advice);
+    }
+    if fraction.is_some() && estimates {
+        let reason = "the stability limit is that of rk4";
+        let advice = "give accuracy or step instead, or write integrator = \"rk4\"";
+        return refuse("numerics.step_fraction", reason, advice);
+    }
+    let stepping = match (step, fraction, accuracy) {
+        (Some(step), _, _) => Stepping::Fixed(step),
+        (_, Some(fraction), _) => Stepping::FractionOfLimit(fraction),
+        (_, _, Some(accuracy)) => Stepping::Accuracy(accuracy),
+        _ if estimates => {
+            let reason = "error in the races' motion of a thousandth of the largest overlap";
+            reader.note("numerics.accuracy", "0.001", reason);
+            Stepping::Accuracy(1e-3)
+        }
+        _ => {
+            reader.note("numerics.step_fraction", "0.5", "half the largest stable step");
+            Stepping::FractionOfLimit(0.5)
+        }
+    };
+    Ok(Steps { integrator, stepping, by_plan })
+}
+
+/// A time that must lie in the run; a window must begin before the end.
+fn within(reader: &Reader, key: &str, end: f64) -> Result<Option<f64>, SceneError> {
+    let Some(value) = reader.given_number(key) else { return Ok(None) };
+    let (relation, allowed) =
+        if key == "output.window_start" { ("not before", "less than") } else { ("after", "up to") };
+    if value < end || (value == end && allowed == "up to") {
+        return Ok(Some(value));
+    }
+    let (other_name, other) = ("the end of the run", end);
+    let advice = "check the units of both";
+    let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
+    Err(reader.document.error(key, problem))
+}

@@ -1,0 +1,433 @@
+//! Bearing geometry from whichever dimensions were given: Tables 2.2, 3.5 and 4.1 state both race
+//! radii and the ball (deep-groove), Table 5.3 the pitch radius and contact angle (angular-contact).
+//!
+//! Radial clearance C = R_outer − R_inner − 2 r_ball, negative for interference.
+
+use crate::ch2_housing::bearing::geometry::{
+    BearingGeometry, BearingKind, ClearanceThrough, Raceway,
+};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::bearing::Reader;
+use crate::scene::resolve::resolved::{Dimensions, RaceDimensions};
+
+const INNER: &str = "bearing.inner_race.radius";
+const OUTER: &str = "bearing.outer_race.radius";
+const THROUGH: &str = "bearing.clearance.through";
+
+/// Clearances beyond this part of the ball radius are taken for a mistake: real ones are below 1 %.
+const LARGEST_CLEARANCE: f64 = 0.05;
+
+pub(crate) fn geometry(
+    reader: &mut Reader,
+    kind: BearingKind,
+) -> Result<(BearingGeometry, Dimensions), SceneError> {
+    let balls = reader.required_number("bearing.balls", "")?;
+    let sizes = match kind {
+        BearingKind::DeepGroove => deep_groove(reader)?,
+        BearingKind::AngularContact => angular_contact(reader)?,
+    };
+    // Checked by the key table: 3 to 200.
+    let ball_count = balls as usize;
+    check_ball_count(reader, ball_count, &sizes)?;
+    check_bore(reader, &sizes)?;
+    let geometry = BearingGeometry {
+        kind,
+        ball_count,
+        ball_radius: sizes.ball,
+        inner: sizes.inner,
+        outer: sizes.outer,
+        pitch_radius: sizes.pitch,
+        contact_angle: sizes.contact_angle,
+        radial_clearance: sizes.clearance,
+    };
+    let race = |radius: f64, raceway: &Raceway, path: &str| RaceDimensions {
+        radius,
+        nominal_radius: reader.given_number(path),
+        groove_radius: raceway.groove_radius,
+        conformity: raceway.groove_radius / (2.0 * sizes.nominal_ball),
+        osculation: sizes.nominal_ball / raceway.groove_radius,
+    };
+    let dimensions = Dimensions {
+        nominal_ball_radius: sizes.nominal_ball,
+        clearance_through: sizes.through,
+        radial_clearance: sizes.clearance,
+        diametral_clearance: 2.0 * sizes.clearance,
+        inner_race: race(sizes.inner_radius, &sizes.inner, INNER),
+        outer_race: race(sizes.outer_radius, &sizes.outer, OUTER),
+        bore_radius: reader.given_number("bearing.inner_race.bore_radius"),
+        outer_radius: reader.given_number("bearing.outer_race.outer_radius"),
+        length: reader.given_number("bearing.length"),
+    };
+    Ok((geometry, dimensions))
+}
+
+/// Lengths in m, after the clearance has been applied.
+struct Sizes {
+    ball: f64,
+    nominal_ball: f64,
+    inner: Raceway,
+    outer: Raceway,
+    /// Groove-bottom radii.
+    inner_radius: f64,
+    outer_radius: f64,
+    pitch: f64,
+    contact_angle: f64,
+    clearance: f64,
+    through: ClearanceThrough,
+}
+
+/// The given radius or half the given diameter.
+fn given_ball(reader: &Reader) -> Option<f64> {
+    let radius = reader.given_number("bearing.ball.radius");
+    radius.or_else(|| reader.given_number("bearing.ball.diameter").map(|diameter| 0.5 * diameter))
+}
+
+/// The key that states the ball's size.
+fn ball_key(reader: &Reader) -> &'static str {
+    if reader.is_given("bearing.ball.diameter") {
+        "bearing.ball.diameter"
+    } else {
+        "bearing.ball.radius"
+    }
+}
+
+/// Radial clearance, if given.
+fn given_clearance(reader: &Reader) -> Option<f64> {
+    let radial = reader.given_number("bearing.clearance.radial");
+    radial.or_else(|| {
+        reader.given_number("bearing.clearance.diametral").map(|diametral| 0.5 * diametral)
+    })
+}
+
+fn clearance_key(reader: &Reader) -> &'static str {
+    if reader.is_given("bearing.clearance.diametral") {
+        "bearing.clearance.diametral"
+    } else {
+        "bearing.clearance.radial"
+    }
+}
+
+fn through_of(word: &str) -> ClearanceThrough {
+    match word {
+        "inner-race" => ClearanceThrough::InnerRace,
+        "outer-race" => ClearanceThrough::OuterRace,
+        _ => ClearanceThrough::Ball,
+    }
+}
+
+/// Groove radius from `groove_radius`, `conformity` or `osculation`, exactly one of which is given.
+fn groove(reader: &Reader, race: &str, ball: f64, nominal: f64) -> Result<f64, SceneError> {
+    let keys = ["groove_radius", "conformity", "osculation"].map(|k| format!("{race}.{k}"));
+    let values = keys.each_ref().map(|key| reader.given_number(key));
+    let (key, radius) = match values {
+        [Some(radius), _, _] => (&keys[0], radius),
+        [_, Some(conformity), _] => (&keys[1], conformity * 2.0 * nominal),
+        [_, _, Some(osculation)] => (&keys[2], nominal / osculation),
+        [None, None, None] => {
+            return Err(reader.missing(&keys[0], " (or `conformity`, or `osculation`)"));
+        }
+    };
+    let largest_ball = ball.max(nominal);
+    if radius > largest_ball && radius <= 1.2 * ball {
+        Ok(radius)
+    } else {
+        let problem = Problem::GrooveDoesNotFit { groove: radius, ball: largest_ball };
+        Err(reader.document.error(key, problem))
+    }
+}
+
+/// The key that states a race's groove.
+fn groove_key(reader: &Reader, race: &str) -> String {
+    let keys = ["conformity", "osculation"].map(|name| format!("{race}.{name}"));
+    let given = keys.into_iter().find(|key| reader.is_given(key));
+    given.unwrap_or_else(|| format!("{race}.groove_radius"))
+}
+
+fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
+    if reader.is_given("bearing.contact_angle") {
+        return Err(reader.document.refused(
+            "bearing.contact_angle",
+            "in a deep-groove bearing the contact angle emerges from the loads",
+            "leave it out, or set kind = \"angular-contact\"",
+        ));
+    }
+    let through = deep_groove_through(reader)?;
+    let (ball_given, clearance_given) = (given_ball(reader), given_clearance(reader));
+    let (mut inner_given, mut outer_given) =
+        (reader.given_number(INNER), reader.given_number(OUTER));
+    // A catalogue gives pitch and ball: races that the ball just touches, then the clearance.
+    let pitch_given = reader.given_number("bearing.pitch_radius");
+    if let (None, None, Some(pitch), Some(ball)) =
+        (inner_given, outer_given, pitch_given, ball_given)
+    {
+        inner_given = Some(pitch - ball);
+        outer_given = Some(pitch + ball);
+    }
+    if let (Some(inner), Some(outer)) = (inner_given, outer_given)
+        && outer <= inner
+    {
+        return Err(reader.document.error(OUTER, Problem::RacesOverlap { inner, outer }));
+    }
+    let need = |path: &str, because: &str| match path {
+        INNER if inner_given.is_some() => Ok(inner_given.unwrap_or_default()),
+        OUTER if outer_given.is_some() => Ok(outer_given.unwrap_or_default()),
+        _ => reader.required_number(path, because),
+    };
+    let need_ball =
+        |because: &str| ball_given.ok_or_else(|| reader.missing("bearing.ball.radius", because));
+    let (inner, outer, ball, clearance);
+    match (clearance_given, through) {
+        (None, _) => {
+            let because = " (needed together with the other radii, as no clearance is given)";
+            inner = need(INNER, because)?;
+            outer = need(OUTER, because)?;
+            ball = need_ball(because)?;
+            clearance = outer - inner - 2.0 * ball;
+            let what = if clearance < 0.0 {
+                "the ball is larger than the gap between the races: "
+            } else {
+                "the ball is much smaller than the gap between the races: "
+            };
+            let advice = "was a diameter given as a radius, or a wrong unit?";
+            limit_clearance(reader, ball_key(reader), what, clearance, ball, advice)?;
+        }
+        (Some(given), ClearanceThrough::Ball) => {
+            let because = " (both race radii are needed when the clearance sets the ball)";
+            clearance = given;
+            inner = need(INNER, because)?;
+            outer = need(OUTER, because)?;
+            ball = 0.5 * (outer - inner - clearance);
+            if ball <= 0.0 {
+                let problem = Problem::NoRoomForBall { gap: outer - inner, clearance };
+                return Err(reader.document.error(clearance_key(reader), problem));
+            }
+        }
+        (Some(given), ClearanceThrough::InnerRace) => {
+            let because = " (needed when the clearance sets the inner race)";
+            clearance = given;
+            outer = need(OUTER, because)?;
+            ball = need_ball(because)?;
+            inner = outer - 2.0 * ball - clearance;
+            if inner <= 0.0 {
+                let problem = Problem::NoRoomForBall { gap: outer, clearance };
+                return Err(reader.document.error(ball_key(reader), problem));
+            }
+        }
+        (Some(given), ClearanceThrough::OuterRace) => {
+            let because = " (needed when the clearance sets the outer race)";
+            clearance = given;
+            inner = need(INNER, because)?;
+            ball = need_ball(because)?;
+            outer = inner + 2.0 * ball + clearance;
+        }
+    }
+    let advice = "check its unit and whether it is radial";
+    limit_clearance(reader, clearance_key(reader), "", clearance, ball, advice)?;
+    let nominal_sizes = [
+        (ball_key(reader), ball_given, ball),
+        (INNER, inner_given, inner),
+        (OUTER, outer_given, outer),
+    ];
+    for (key, nominal, derived) in nominal_sizes {
+        limit_nominal(reader, key, nominal.unwrap_or(derived), derived, ball)?;
+    }
+    let nominal_ball = ball_given.unwrap_or(ball);
+    let inner_groove = groove(reader, "bearing.inner_race", ball, nominal_ball)?;
+    let outer_groove = groove(reader, "bearing.outer_race", ball, nominal_ball)?;
+    if outer_groove >= outer {
+        let problem = Problem::GrooveReachesAxis { groove: outer_groove, race: outer };
+        return Err(reader.document.error(&groove_key(reader, "bearing.outer_race"), problem));
+    }
+    let pitch = reader.given_number("bearing.pitch_radius").unwrap_or(0.5 * (inner + outer));
+    // A twentieth of the ball's radius is far more than any clearance or rounding of a catalogue.
+    let (half_way, slack) = (0.5 * (inner + outer), 0.05 * ball);
+    let (least, most) = (half_way - slack, half_way + slack);
+    if !(least..=most).contains(&pitch) {
+        let problem = Problem::PitchOutsideGap { pitch, inner: least, outer: most };
+        return Err(reader.document.error("bearing.pitch_radius", problem));
+    }
+    let raceway = |centre_radius: f64, groove_radius: f64| Raceway {
+        centre_radius,
+        centre_axial: 0.0,
+        groove_radius,
+    };
+    Ok(Sizes {
+        ball,
+        nominal_ball,
+        inner: raceway(inner + inner_groove, inner_groove),
+        outer: raceway(outer - outer_groove, outer_groove),
+        inner_radius: inner,
+        outer_radius: outer,
+        pitch,
+        contact_angle: 0.0,
+        clearance,
+        through,
+    })
+}
+
+/// Which part the clearance sets: as given; else the one part without size; else the ball.
+fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneError> {
+    if let Some(word) = reader.choice_if_given(THROUGH) {
+        return Ok(through_of(word));
+    }
+    let (inner, outer) = (reader.is_given(INNER), reader.is_given(OUTER));
+    let ball = given_ball(reader).is_some();
+    let clearance = given_clearance(reader).is_some();
+    let (word, reason) = match (clearance, inner, outer, ball) {
+        (true, false, true, true) => ("inner-race", "the inner race is the part without a radius"),
+        (true, true, false, true) => ("outer-race", "the outer race is the part without a radius"),
+        (true, ..) => {
+            return Ok(reader.choice(THROUGH).map_or(ClearanceThrough::Ball, through_of));
+        }
+        // All radii given: the clearance follows and nothing is set by it.
+        (false, ..) => return Ok(ClearanceThrough::Ball),
+    };
+    reader.note(THROUGH, word, reason);
+    Ok(through_of(word))
+}
+
+fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
+    for path in [INNER, OUTER] {
+        if reader.is_given(path) {
+            return Err(reader.document.refused(path,
+                "in an angular-contact bearing it follows from pitch radius, ball, groove and angle",
+                "leave it out, or set kind = \"deep-groove\"",
+            ));
+        }
+    }
+    let because = " (an angular-contact bearing needs it)";
+    let pitch = reader.required_number("bearing.pitch_radius", because)?;
+    let angle = reader.required_number("bearing.contact_angle", because)?;
+    let Some(nominal) = given_ball(reader) else {
+        return Err(reader.missing("bearing.ball.radius", because));
+    };
+    let clearance = match given_clearance(reader) {
+        Some(clearance) => clearance,
+        None => {
+            reader.note(
+                "bearing.clearance.radial",
+                "0 um",
+                "the parts just touch at the contact angle",
+            );
+            0.0
+        }
+    };
+    let through = if clearance == 0.0 && !reader.is_given(THROUGH) {
+        ClearanceThrough::Ball
+    } else {
+        reader.choice(THROUGH).map_or(ClearanceThrough::Ball, through_of)
+    };
+    let advice = "check its unit and whether it is radial";
+    limit_clearance(reader, clearance_key(reader), "", clearance, nominal, advice)?;
+
+    // Grooves first fit the nominal ball; the ball in use is checked below.
+    let inner_groove = groove(reader, "bearing.inner_race", nominal, nominal)?;
+    let outer_groove = groove(reader, "bearing.outer_race", nominal, nominal)?;
+    // Distance of the groove centres when the nominal ball touches both races.
+    let centre_distance = inner_groove + outer_groove - 2.0 * nominal;
+    // Beyond this the groove centres pass each other and the gap opens again.
+    let least = -centre_distance * libm::cos(angle);
+    if clearance <= least {
+        let problem = Problem::InterferenceTooLarge { clearance, least };
+        return Err(reader.document.error(clearance_key(reader), problem));
+    }
+    // The number of balls plays no part in the sizes; it is checked against them later.
+    let touching =
+        BearingGeometry::angular_contact(1, pitch, inner_groove, outer_groove, nominal, angle);
+    let bearing = touching.with_radial_clearance(clearance, through);
+    let ball = bearing.ball_radius;
+    let (inner_radius, outer_radius) = bearing.race_radii();
+    groove(reader, "bearing.inner_race", ball, nominal)?;
+    groove(reader, "bearing.outer_race", ball, nominal)?;
+    let sizes = Sizes {
+        ball,
+        nominal_ball: nominal,
+        inner: bearing.inner,
+        outer: bearing.outer,
+        inner_radius,
+        outer_radius,
+        pitch,
+        contact_angle: angle,
+        clearance,
+        through,
+    };
+    if !(sizes.inner_radius > 0.0 && sizes.outer.centre_radius > 0.0) {
+        let problem = Problem::WrongOrder {
+            value: pitch,
+            relation: "more than",
+            other_name: "what ball and groove need",
+            other: pitch - sizes.inner_radius.min(sizes.outer.centre_radius),
+            advice: "check the pitch radius and the ball",
+        };
+        return Err(reader.document.error("bearing.pitch_radius", problem));
+    }
+    Ok(sizes)
+}
+
+fn limit_clearance(
+    reader: &Reader,
+    key: &str,
+    what: &'static str,
+    clearance: f64,
+    ball_radius: f64,
+    advice: &'static str,
+) -> Result<(), SceneError> {
+    if clearance.abs() <= LARGEST_CLEARANCE * ball_radius {
+        return Ok(());
+    }
+    let problem = Problem::ClearanceTooLarge { what, clearance, ball_radius, advice };
+    Err(reader.document.error(key, problem))
+}
+
+/// The nominal size of the part that the clearance sets must be near the size it gets.
+fn limit_nominal(
+    reader: &Reader,
+    key: &str,
+    nominal: f64,
+    derived: f64,
+    ball: f64,
+) -> Result<(), SceneError> {
+    let allowed = LARGEST_CLEARANCE * ball;
+    if (nominal - derived).abs() <= allowed {
+        return Ok(());
+    }
+    Err(reader.document.error(key, Problem::NominalFarOff { nominal, derived, allowed }))
+}
+
+/// Neighbouring ball centres are 2 R_pitch sin(π/Z) apart, which must exceed a ball diameter.
+fn check_ball_count(reader: &Reader, count: usize, sizes: &Sizes) -> Result<(), SceneError> {
+    let fits =
+        |count: usize| sizes.ball < sizes.pitch * libm::sin(std::f64::consts::PI / count as f64);
+    if fits(count) {
+        return Ok(());
+    }
+    let largest = (1..count).rev().find(|&count| fits(count)).unwrap_or(0);
+    let problem = Problem::BallsDoNotFit { count, largest, ball: sizes.ball, pitch: sizes.pitch };
+    Err(reader.document.error("bearing.balls", problem))
+}
+
+fn check_bore(reader: &Reader, sizes: &Sizes) -> Result<(), SceneError> {
+    let bore = reader.given_number("bearing.inner_race.bore_radius");
+    if let Some(value) = bore.filter(|bore| *bore >= sizes.inner_radius) {
+        let problem = Problem::WrongOrder {
+            value,
+            relation: "less than",
+            other_name: "the groove bottom's radius",
+            other: sizes.inner_radius,
+            advice: "was a diameter given?",
+        };
+        return Err(reader.document.error("bearing.inner_race.bore_radius", problem));
+    }
+    let rim = reader.given_number("bearing.outer_race.outer_radius");
+    if let Some(value) = rim.filter(|rim| *rim <= sizes.outer_radius) {
+        let problem = Problem::WrongOrder {
+            value,
+            relation: "more than",
+            other_name: "the groove bottom's radius",
+            other: sizes.outer_radius,
+            advice: "the race surrounds its groove",
+        };
+        return Err(reader.document.error("bearing.outer_race.outer_radius", problem));
+    }
+    Ok(())
+}

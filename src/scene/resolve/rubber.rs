@@ -1,0 +1,256 @@
+//! From the given keys to what a solid is made of: linear elastic, or rubber with all that follows from it.
+
+use crate::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
+use crate::ch2_housing::elastomer::maxwell::Maxwell;
+use crate::ch2_housing::elastomer::{Elastomer, ElastomerError, named};
+use crate::scene::error::SceneError;
+use crate::scene::resolve::bearing::Reader;
+use crate::scene::resolve::solid::{item_number, missing};
+use crate::scene::resolve::solid_scene::{Harmonic, Law, MeshSource, RubberScene, RunSteps};
+use crate::scene::tables::keys;
+use crate::scene::text::document::Document;
+use crate::scene::text::units::plain;
+use crate::scene::text::value::Checked;
+use crate::solids::rubber::steps::Stepping;
+
+const LAW: &str = "solid.material.law";
+/// B over C_R where nothing is given: that of Tables 2.3 and 3.1.
+const BULK_RATIO: f64 = 100.0;
+/// As the range of `bulk_ratio`.
+const MOST_BULK_RATIO: f64 = 1e6;
+/// N of both tables.
+const CHAIN: f64 = 8.0;
+/// Densities, kg/m³.
+const STEEL: f64 = 7850.0;
+const RUBBER: f64 = 1100.0;
+/// Estimated error of the stress in a step, over the largest so far.
+const ACCURACY: f64 = 1e-3;
+
+/// Keys and tables that only rubber has.
+const OF_RUBBER: [&str; 8] = [
+    "solid.material.rubber_modulus",
+    "solid.material.table",
+    "solid.material.chain",
+    "solid.material.chain_pull",
+    "solid.material.bulk_ratio",
+    "solid.material.bulk_modulus",
+    "solid.material.maxwell",
+    "solid.harmonic",
+];
+
+/// Keys that a solid of rubber has no use for, and why.
+const NOT_OF_RUBBER: [(&str, &str); 10] = [
+    ("solid.material.youngs_modulus", "it belongs to the law \"linear-elastic\""),
+    ("solid.material.poisson_ratio", "it belongs to the law \"linear-elastic\""),
+    ("solid.damping", "what rubber loses follows from its Maxwell elements"),
+    ("solid.damped_motion", "what rubber loses follows from its Maxwell elements"),
+    ("solid.velocity", NO_INERTIA),
+    ("solid.spin", NO_INERTIA),
+    ("modes", NO_INERTIA),
+    ("numerics.method", NO_INERTIA),
+    ("numerics.step_fraction", NO_INERTIA),
+    ("numerics.energy_limit", "implicit steps end in equilibrium, and no ledger is kept"),
+];
+const NO_INERTIA: &str = "rubber is solved without inertia, in implicit steps";
+
+/// Whether the scene's solid is of rubber.
+pub(crate) fn is_rubber(document: &Document) -> bool {
+    matches!(document.value(LAW), Some(Checked::Choice("elastomer")))
+}
+
+/// What a housing is made of.
+pub(crate) fn refuse_rubber(document: &Document) -> Result<(), SceneError> {
+    if !is_rubber(document) {
+        return Ok(());
+    }
+    let reason = "a housing of rubber is not built";
+    let advice = "leave `law` out, or take the solid by itself: without [bearing] and [housing]";
+    Err(document.refused(LAW, reason, advice))
+}
+
+/// The law of the material, and its density (kg/m³).
+pub(crate) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
+    let document = reader.document;
+    if !is_rubber(document) {
+        if let Some(key) = OF_RUBBER.iter().find_map(|part| document.first_below(part)) {
+            let reason = "it belongs to the law \"elastomer\"";
+            let advice = "write `law = \"elastomer\"` in [solid.material], or leave it out";
+            return Err(document.refused(key, reason, advice));
+        }
+        let mut number = |key: &str, usual: f64| {
+            reader.number(&format!("solid.material.{key}")).unwrap_or(usual)
+        };
+        let law = Law::LinearElastic {
+            youngs_modulus: number("youngs_modulus", 210e9),
+            poisson_ratio: number("poisson_ratio", 0.3),
+        };
+        return Ok((law, density(reader, STEEL, "bearing steel")));
+    }
+    for (key, reason) in NOT_OF_RUBBER {
+        if let Some(given) = document.first_below(key) {
+            return Err(document.refused(given, reason, "leave it out"));
+        }
+    }
+    let table = reader.choice_if_given("solid.material.table");
+    let pull = match reader.choice("solid.material.chain_pull") {
+        Some("inverse-langevin") => ChainPull::Exact,
+        _ => ChainPull::FiveTerms,
+    };
+    let because = " with `law = \"elastomer\"` and no `table`";
+    let material = rubber(reader, "solid.material", table, pull, because)?;
+    let density = density(reader, RUBBER, "usual for filled rubber; the source states none");
+    let harmonic = harmonic(reader)?;
+    Ok((Law::Elastomer(Box::new(RubberScene { material, table, harmonic })), density))
+}
+
+/// The density that is given, else a usual one.
+fn density(reader: &mut Reader, usual: f64, reason: &str) -> f64 {
+    const KEY: &str = "solid.material.density";
+    reader.given_number(KEY).unwrap_or_else(|| {
+        reader.note(KEY, &format!("{} kg/m^3", plain(usual)), reason);
+        usual
+    })
+}
+
+/// The rubber of the keys in the table `of`; keys given beside a table of the source take the place of what it says.
+pub(crate) fn rubber(
+    reader: &mut Reader,
+    of: &str,
+    table: Option<&'static str>,
+    pull: ChainPull,
+    because: &str,
+) -> Result<Elastomer, SceneError> {
+    let document = reader.document;
+    let path = |key: &str| format!("{of}.{key}");
+    let base = match table {
+        Some("2.3") => Some(named::table_2_3()),
+        Some(_) => Some(named::table_3_1()),
+        None => None,
+    };
+    // A bushing has fewer of these keys than a solid.
+    let given = |key: &str| {
+        let path = path(key);
+        keys::find(&path).and_then(|_| reader.given_number(&path))
+    };
+    let [modulus, chain, ratio, bulk] =
+        ["rubber_modulus", "chain", "bulk_ratio", "bulk_modulus"].map(given);
+    let modulus = match modulus.or(base.as_ref().map(|base| base.network.modulus)) {
+        Some(modulus) => modulus,
+        None => {
+            return Err(reader.missing(&path("rubber_modulus"), because));
+        }
+    };
+    let locking = chain.unwrap_or_else(|| {
+        if table.is_none() {
+            reader.note(&path("chain"), &plain(CHAIN), "as in Tables 2.3 and 3.1");
+        }
+        CHAIN
+    });
+    let bulk = match (bulk, ratio) {
+        (Some(bulk), _) if bulk < modulus => {
+            let reason =
+                "rubber hardly changes its volume, and this is less than C_R of its network";
+            let advice = "give at least C_R, usually 100 times that and more";
+            return Err(document.refused("solid.material.bulk_modulus", reason, advice));
+        }
+        (Some(bulk), _) if bulk > MOST_BULK_RATIO * modulus => {
+            let reason = "no rubber resists a change of volume as much, and rounding takes the digits of what is left";
+            let advice = "give at most a million times C_R; many rubbers have 2000 MPa, a thousand times that";
+            return Err(document.refused("solid.material.bulk_modulus", reason, advice));
+        }
+        (Some(bulk), _) => bulk,
+        (None, Some(ratio)) => ratio * modulus,
+        (None, None) => {
+            if table.is_none() {
+                let reason = "100 C_R, as in Tables 2.3 and 3.1";
+                reader.note(&path("bulk_ratio"), &plain(BULK_RATIO), reason);
+            }
+            BULK_RATIO * modulus
+        }
+    };
+    let network = EightChain::new(modulus, locking, bulk, pull).map_err(|error| {
+        let key = match error {
+            ElastomerError::Modulus(_) => "rubber_modulus",
+            ElastomerError::Bulk(_) => "bulk_modulus",
+            _ => "chain",
+        };
+        let reason = "with the inverse Langevin function the chains are straight in the undeformed rubber where it \
+                      is 1 or less";
+        let advice = "take more than 1; the source has 8";
+        document.refused(&path(key), reason, advice)
+    })?;
+    let (mut maxwell, list) = (Vec::new(), path("maxwell"));
+    for item in document.items(&list) {
+        let number = |key: &str, example: &str| {
+            item_number(item, key).ok_or_else(|| missing(item, key, "", example))
+        };
+        let gamma = number("gamma", "gamma = 0.492")?;
+        let tau = number("relaxation_time", "relaxation_time = \"10 s\"")?;
+        maxwell.push(Maxwell { gamma, tau });
+    }
+    if let Some(base) = base.filter(|_| maxwell.is_empty()) {
+        maxwell = base.maxwell;
+        if table == Some("2.3") {
+            let value = "those of Table 3.1";
+            let reason = "Table 2.3 prints none; the source says that they were adjusted";
+            reader.note(&path("maxwell"), value, reason);
+        }
+    }
+    Ok(Elastomer { network, maxwell })
+}
+
+fn harmonic(reader: &Reader) -> Result<Option<Harmonic>, SceneError> {
+    let document = reader.document;
+    if document.first_below("solid.harmonic").is_none() {
+        return Ok(None);
+    }
+    let frequencies = match document.value("solid.harmonic.frequencies") {
+        Some(Checked::Quantities(frequencies)) => frequencies.clone(),
+        _ => return Err(reader.missing("solid.harmonic.frequencies", "")),
+    };
+    let set = match document.value("solid.harmonic.set") {
+        Some(Checked::Text(set)) => set.clone(),
+        _ => return Err(reader.missing("solid.harmonic.set", ", the set that is moved")),
+    };
+    let axis = match reader.choice_if_given("solid.harmonic.axis") {
+        Some("x") => 0,
+        Some("y") => 1,
+        Some(_) => 2,
+        None => return Err(reader.missing("solid.harmonic.axis", ", along which it is moved")),
+    };
+    Ok(Some(Harmonic { set, axis, frequencies }))
+}
+
+/// Implicit elements are those of ten nodes.
+pub(crate) fn check_order(
+    document: &Document,
+    source: &MeshSource,
+    order: Option<crate::mesh::Order>,
+) -> Result<(), SceneError> {
+    use crate::mesh::Order;
+    let linear = match source {
+        // A file says what it has; the mesh is looked at when it is read.
+        MeshSource::File { .. } => order == Some(Order::Linear),
+        _ => order != Some(Order::Quadratic),
+    };
+    if !(linear && is_rubber(document)) {
+        return Ok(());
+    }
+    let reason = FOUR_NODES_LOCK;
+    let advice = "write `order = 2` in [solid.mesh]";
+    Err(document.refused("solid.mesh.order", reason, advice))
+}
+
+pub(crate) const FOUR_NODES_LOCK: &str = "four-node elements of rubber lock: it hardly changes its volume, and they can hardly do anything else";
+
+/// How the steps of a run follow from the scene.
+pub(crate) fn steps(reader: &mut Reader) -> RunSteps {
+    RunSteps::Implicit(match reader.given_number("numerics.step") {
+        Some(step) => Stepping::Fixed(step),
+        None => Stepping::Accuracy(reader.given_number("numerics.accuracy").unwrap_or_else(|| {
+            let reason = "of the largest stress so far, in each step";
+            reader.note("numerics.accuracy", &plain(ACCURACY), reason);
+            ACCURACY
+        })),
+    })
+}

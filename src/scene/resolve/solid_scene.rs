@@ -1,0 +1,236 @@
+//! A scene with a flexible solid alone, resolved: SI units, defaults filled in, its mesh not read.
+
+use crate::ch2_housing::elastomer::Elastomer;
+use crate::mesh::generate::{
+    Bushing, BushingMesh, Cage, CageMesh, ContactBlock, Housing, HousingMesh, Part, Ring, RingMesh,
+};
+use crate::mesh::read::LengthUnit;
+use crate::mesh::{Order, Surface};
+use crate::numeric::profile::Profile;
+use crate::scene::build::assembly::AssemblyScene;
+use crate::scene::resolve::resolved::{Assumption, DefaultUsed};
+use crate::solids::explicit::{ExplicitMethod, SolidStepping};
+use crate::solids::model::DampedMotion;
+use crate::solids::rubber::steps::Stepping;
+use crate::solids::tangent::MassMatrix;
+use std::path::PathBuf;
+
+/// What a scene is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// Bearings, alone or with what they sit on and in.
+    Assembly(Box<AssemblyScene>),
+    /// A solid by itself.
+    Solid(Box<SolidScene>),
+}
+
+/// Where the mesh comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshSource {
+    File {
+        /// As the scene has it, and from the folder of the command.
+        name: String,
+        path: PathBuf,
+        unit: LengthUnit,
+    },
+    /// Sizes along X, Y, Z and cells.
+    Bar {
+        size: [f64; 3],
+        cells: [usize; 3],
+    },
+    Block(ContactBlock),
+    Ring(Ring, RingMesh),
+    Shaft {
+        radius: f64,
+        stations: Vec<f64>,
+        longest_layer: f64,
+        around: usize,
+        radial: usize,
+    },
+    Cage(Cage, CageMesh),
+    Housing(Housing, HousingMesh),
+    Bushing(Bushing, BushingMesh),
+}
+
+/// Where a mesh is put.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MeshPlace {
+    /// Point of the mesh's own coordinates that comes to lie on the axis X, m.
+    pub origin: [f64; 3],
+    /// Axis of the mesh that becomes X: 0, 1 or 2; the others follow in their order.
+    pub axis: usize,
+    /// Where on X the point comes to lie, m.
+    pub at: f64,
+}
+
+impl MeshPlace {
+    /// Puts nodes in their place; those of a mesh that stays where it is keep their bits.
+    pub fn put(&self, nodes: &mut [[f64; 3]]) {
+        if *self == MeshPlace::default() {
+            return;
+        }
+        for node in nodes {
+            let from: [f64; 3] = std::array::from_fn(|i| node[i] - self.origin[i]);
+            *node = std::array::from_fn(|i| from[(i + self.axis) % 3]);
+            node[0] += self.at;
+        }
+    }
+}
+
+/// The mesh as the scene asks for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshRequest {
+    pub source: MeshSource,
+    pub place: MeshPlace,
+    /// `None` leaves a file's own.
+    pub order: Option<Order>,
+    pub renumber: bool,
+    /// Repairs of a file's mesh. Duplicates are joined within the distance that finds them.
+    pub orient: bool,
+    pub merge_duplicates: bool,
+    pub drop_unreferenced: bool,
+    pub cavities: usize,
+    pub largest_aspect: f64,
+    pub sets: Vec<SetRequest>,
+}
+
+impl MeshRequest {
+    /// Whether forces, stiffness and energies are a quarter of those of the whole.
+    pub fn is_quarter(&self) -> bool {
+        matches!(&self.source, MeshSource::Bushing(_, cells) if cells.part == Part::Quarter)
+    }
+}
+
+/// A set by geometry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetRequest {
+    pub name: String,
+    pub place: SetPlace,
+    /// m; `None` for a part of the mesh's size.
+    pub tolerance: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum SetPlace {
+    Surface(Surface),
+    Box { low: [f64; 3], high: [f64; 3] },
+}
+
+/// A set that is held or moved along some axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    pub set: String,
+    /// m.
+    pub motion: [Option<Profile>; 3],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetLoad {
+    pub set: String,
+    pub kind: LoadKind,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoadKind {
+    /// Total force along each axis, N.
+    Force([Option<Profile>; 3]),
+    /// Pa, into the body.
+    Pressure(Profile),
+}
+
+/// Something whose mean displacement is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    pub name: String,
+    pub of: ProbeOf,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum ProbeOf {
+    Set(String),
+    /// The node nearest to this place, m.
+    Place([f64; 3]),
+}
+
+/// How a run is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolidRun {
+    pub steps: RunSteps,
+    /// s.
+    pub end: f64,
+    /// Time from one row to the next and from one file of fields to the next, s.
+    pub output_interval: f64,
+    pub fields_interval: f64,
+}
+
+/// Steps of a run: with inertia, or from equilibrium to equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RunSteps {
+    Explicit {
+        method: ExplicitMethod,
+        stepping: SolidStepping,
+        /// Energy unaccounted for over energy turned over at which the run is stopped.
+        energy_limit: f64,
+    },
+    Implicit(Stepping),
+}
+
+/// What a solid is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// Young's modulus in Pa.
+    LinearElastic {
+        youngs_modulus: f64,
+        poisson_ratio: f64,
+    },
+    Elastomer(Box<RubberScene>),
+}
+
+/// A rubber, and what only a solid of rubber is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RubberScene {
+    pub material: Elastomer,
+    /// The table of the source that it is named by.
+    pub table: Option<&'static str>,
+    pub harmonic: Option<Harmonic>,
+}
+
+/// Small vibrations that are asked for: of a set along an axis (0, 1 or 2), all other held sets at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Harmonic {
+    pub set: String,
+    pub axis: usize,
+    /// Hz.
+    pub frequencies: Vec<f64>,
+}
+
+/// A resolved scene with a solid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidScene {
+    pub title: Option<String>,
+    pub source: Option<String>,
+    pub assumptions: Vec<Assumption>,
+    pub defaults_used: Vec<DefaultUsed>,
+    pub mesh: MeshRequest,
+    pub law: Law,
+    /// kg/m³.
+    pub density: f64,
+    /// 1/s.
+    pub damping: f64,
+    pub damped_motion: DampedMotion,
+    /// m/s².
+    pub gravity: [f64; 3],
+    /// At the start of a run, m/s, and the rotation about X, rad/s.
+    pub velocity: [f64; 3],
+    pub spin: f64,
+    pub held: Vec<Held>,
+    pub loads: Vec<SetLoad>,
+    pub probes: Vec<Probe>,
+    pub mode_count: usize,
+    pub mode_mass: MassMatrix,
+    /// `None` where the scene gives no end.
+    pub run: Option<SolidRun>,
+    /// Whether series and spectra are drawn.
+    pub draw_series: bool,
+    pub draw_spectrum: bool,
+}

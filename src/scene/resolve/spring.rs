@@ -1,0 +1,146 @@
+//! From the keys of a spring to what it joins, where, and how stiff it is.
+
+use crate::members::connection::MaxwellElement;
+use crate::scene::build::assembly::{
+    Carrier, PlacedBearing, SIX, Spring, SpringAt, SpringEnd, race_at,
+};
+use crate::scene::error::{Problem, SceneError};
+use crate::scene::resolve::bearing::{Reader, text};
+use crate::scene::resolve::bushing::bushing;
+use crate::scene::resolve::resolved::DefaultUsed;
+use crate::scene::resolve::solid::{item_number, missing};
+use crate::scene::tables::assembly::{GROUND, OWN_RACES};
+use crate::scene::tables::keys::nearest;
+use crate::scene::text::document::Document;
+use crate::scene::text::items::ItemRef;
+
+/// A spring between two bodies, a body and the ground, or a race that is a body of its own.
+pub(crate) fn spring(
+    document: &Document,
+    name: &str,
+    (bodies, bearings): (&[&str], &[PlacedBearing]),
+    defaults: &mut Vec<DefaultUsed>,
+) -> Result<Spring, SceneError> {
+    let scoped = document.scoped(name);
+    let mut reader = Reader::new(&scoped);
+    let end = |reader: &Reader, key: &str| -> Result<SpringAt, SceneError> {
+        match text(reader.document, key).as_deref() {
+            None if key == "spring.from" => Err(reader.missing(key, "")),
+            None | Some(GROUND) => Ok(SpringAt::Ground),
+            Some(name) => match bodies.iter().position(|other| *other == name) {
+                Some(index) => Ok(SpringAt::Body(index)),
+                None => race(reader, key, name, bodies, bearings),
+            },
+        }
+    };
+    let from = end(&reader, "spring.from")?;
+    let to = end(&reader, "spring.to")?;
+    if text(&scoped, "spring.to").is_none() {
+        reader.note_default("spring.to");
+    }
+    if from == to {
+        let reason = "both ends are at the same body";
+        let advice = "a spring joins two bodies, or a body and the ground";
+        return Err(scoped.refused("spring.to", reason, advice));
+    }
+    // Both ends at one place; that of a race, where one end is at a race.
+    let [from_x, to_x] = [from, to].map(|at| race_at(bearings, at));
+    let along = match from {
+        SpringAt::Race { .. } => reader.number("spring.from_at").unwrap_or(0.0),
+        _ if to_x != 0.0 => reader.given_number("spring.from_at").unwrap_or(to_x),
+        _ => reader.number("spring.from_at").unwrap_or(0.0),
+    };
+    let to_along = reader.given_number("spring.to_at").unwrap_or(from_x + along - to_x);
+    let six = |what: &str| {
+        SIX.map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
+    };
+    let (stiffness, damping) = (six("stiffness"), six("damping"));
+    let maxwell = scoped.items("spring.maxwell").map(maxwell).collect::<Result<Vec<_>, _>>()?;
+    let ends = [SpringEnd { at: from, along }, SpringEnd { at: to, along: to_along }];
+    let mut spring = Spring { name: name.into(), ends, stiffness, damping, maxwell, bushing: None };
+    match bushing(&mut reader)? {
+        Some((bushing, law)) => {
+            (spring.stiffness, spring.maxwell) = (law.stiffness, law.maxwell);
+            spring.bushing = Some(Box::new(bushing));
+        }
+        None if stiffness == [0.0; 6] && damping == [0.0; 6] && spring.maxwell.is_empty() => {
+            return Err(reader.missing("spring.stiffness.x", " or another spring or dashpot"));
+        }
+        None => {}
+    }
+    reader.note_named(defaults);
+    Ok(spring)
+}
+
+/// A race that is a body of its own, `outer_race` or `left.outer_race`.
+fn race(
+    reader: &Reader,
+    key: &str,
+    name: &str,
+    bodies: &[&str],
+    bearings: &[PlacedBearing],
+) -> Result<SpringAt, SceneError> {
+    let refused = |reason: &str, advice: &str| reader.document.refused(key, reason, advice);
+    let (of, race) = name.split_once('.').map_or((None, name), |(of, race)| (Some(of), race));
+    let side = OWN_RACES.iter().position(|own| *own == race);
+    let bearing = match of {
+        None if bearings.len() == 1 => Some(0),
+        None => None,
+        Some(of) => bearings.iter().position(|placed| placed.name.as_deref() == Some(of)),
+    };
+    let (Some(side), Some(bearing)) = (side, bearing) else {
+        if side.is_some() && of.is_none() {
+            let each = bearings.iter().filter_map(|placed| placed.name.as_ref());
+            let each: Vec<String> = each.map(|name| format!("{name}.{race}")).collect();
+            let advice = format!("write one of {}", each.join(", "));
+            return Err(refused("there are several bearings", &advice));
+        }
+        return Err(reader.document.error(key, no_such_end(name, bodies, bearings)));
+    };
+    let placed = &bearings[bearing];
+    if let Carrier::Body { index, .. } = placed.carriers[side] {
+        let advice = format!("write {:?}", bodies[index]);
+        return Err(refused(&format!("this race sits on body.{}", bodies[index]), &advice));
+    }
+    if side == 1 && placed.housing.is_some() {
+        let advice = "join the spring to a body, or leave the housing out";
+        return Err(refused("the outer race sits in the bore of its housing", advice));
+    }
+    if side == 1 && placed.scene.dynamics.outer.is_none() {
+        let advice = "write `motion = \"5-dof\"` in [outer_race]";
+        return Err(refused("the outer race is fixed", advice));
+    }
+    Ok(SpringAt::Race { bearing, side })
+}
+
+/// What a spring may begin or end at instead.
+fn no_such_end(name: &str, bodies: &[&str], bearings: &[PlacedBearing]) -> Problem {
+    let mut known: Vec<String> = bodies.iter().map(|body| body.to_string()).collect();
+    for placed in bearings {
+        let moves = [true, placed.scene.dynamics.outer.is_some() && placed.housing.is_none()];
+        for (side, race) in OWN_RACES.iter().enumerate() {
+            if moves[side] && matches!(placed.carriers[side], Carrier::Own { .. }) {
+                let of = placed.name.as_ref().map_or(String::new(), |name| format!("{name}."));
+                known.push(format!("{of}{race}"));
+            }
+        }
+    }
+    known.push(GROUND.into());
+    let advice = match nearest(name, known.iter().map(String::as_str), 0.5) {
+        Some(nearest) => format!("did you mean {nearest}?"),
+        None => "write one of them; a race is named where it moves by itself".into(),
+    };
+    let reason = format!("a spring does not end at {name:?}, it may at: {}", known.join(", "));
+    Problem::refused(reason, advice)
+}
+
+fn maxwell(item: ItemRef) -> Result<MaxwellElement, SceneError> {
+    let Some(relaxation_time) = item_number(item, "relaxation_time") else {
+        return Err(missing(item, "relaxation_time", "", "relaxation_time = \"10 ms\""));
+    };
+    let stiffness = SIX.map(|name| item_number(item, name).unwrap_or(0.0));
+    if stiffness == [0.0; 6] {
+        return Err(missing(item, "z", ", nothing relaxes", "z = \"2e6 N/m\""));
+    }
+    Ok(MaxwellElement { stiffness, relaxation_time })
+}

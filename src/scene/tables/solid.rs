@@ -1,0 +1,223 @@
+//! Rows of the key table: a flexible solid by itself, its mesh, supports, loads and outputs.
+
+use crate::scene::tables::bearing::{FORCE, GRAVITY};
+use crate::scene::tables::keys::{
+    Key, Kind, Need, Range, Table, above, closed, list_table, open, table,
+};
+use crate::scene::text::units::Dimension::{
+    Density, Frequency, Length, Rate, RotationSpeed, Speed, Stress, Time,
+};
+use Need::{Default, Depends, Optional, Required};
+
+pub const GENERATORS: &[&str] = &[
+    "bar",
+    "block",
+    "ring",
+    "shaft",
+    "cage",
+    "housing-a",
+    "housing-b",
+    "housing-c",
+    "housing-d",
+    "bushing",
+];
+const AXES: &[&str] = &["x", "y", "z"];
+const LENGTH_UNITS: &[&str] = &["mm", "m"];
+const REPAIRS: &[&str] = &["orient", "merge-duplicates", "drop-unreferenced"];
+pub(crate) const DAMPED_MOTIONS: &[&str] = &["absolute", "relative-to-rigid"];
+const METHODS: &[&str] = &["central-differences", "runge-kutta"];
+const MASSES: &[&str] = &["consistent", "lumped"];
+const PLANES: &[&str] = &["x", "y", "z"];
+const LAWS: &[&str] = &["linear-elastic", "elastomer"];
+pub(crate) const RUBBERS: &[&str] = &["2.3", "3.1"];
+const PULLS: &[&str] = &["five-terms", "inverse-langevin"];
+const PARTS: &[&str] = &["whole", "quarter"];
+const WITH_RUBBER: &str = "with `law = \"elastomer\"`";
+
+const SIZE: Kind = Kind::Quantity(Length, open(0.0, 100.0, "m"));
+const PLACE: Range = closed(-1000.0, 1000.0, "m");
+const CELLS: Kind = Kind::Integer { low: 1, high: 100_000 };
+const GROWTH: Kind = Kind::Number(closed(0.1, 10.0, ""));
+const PRESSURE: Kind = Kind::Profile(Stress, closed(-1e6, 1e6, "MPa"));
+const HELD: Kind = Kind::TrueOrProfile(Length, closed(-1e6, 1e6, "um"));
+const EVEN: Need = Default { value: "1", reason: "even steps" };
+
+const fn size(path: &'static str, how: &'static str, doc: &'static str) -> Key {
+    Key::new(path, SIZE, Depends(how), doc)
+        .hint("a positive length; check the unit")
+        .example_of("20 mm")
+}
+
+const fn cells(path: &'static str, how: &'static str, doc: &'static str) -> Key {
+    Key::new(path, CELLS, Depends(how), doc).hint("a mesh of millions of cells is rarely meant")
+}
+
+/// In the order of the reference.
+#[rustfmt::skip]
+pub(crate) const KEYS: &[Key] = &[
+    Key::new("solid.damping", Kind::Quantity(Rate, closed(0.0, 1e9, "1/s")), Default { value: "0 1/s", reason: "no damping" },
+        "Mass-proportional damping: force per mass and velocity.").hint("the source has 77 and 100 1/s"),
+    Key::new("solid.damped_motion", Kind::Choice(DAMPED_MOTIONS), Default { value: "absolute", reason: "as (2.7)" },
+        "What damping brakes: all motion, or motion relative to the body's own translation and rotation."),
+    Key::new("solid.gravity", GRAVITY, Default { value: "none", reason: "the weight is left out" },
+        "Acceleration of gravity along X, Y and Z."),
+    Key::new("solid.velocity", Kind::Vector(Speed, closed(-1e4, 1e4, "m/s")), Default { value: "none", reason: "it starts at rest" },
+        "Velocity of the whole body at the start of a run.").example_of("-1 m/s"),
+    Key::new("solid.spin", Kind::Quantity(RotationSpeed, closed(-1e6, 1e6, "rpm")), Default { value: "0 rpm", reason: "it does not turn" },
+        "Rotation of the whole body about X at the start of a run."),
+
+    Key::new("solid.material.law", Kind::Choice(LAWS), Depends("`linear-elastic` unless given"),
+        "Linear elastic (St. Venant-Kirchhoff), or rubber: an eight-chain network (2.8) beside Maxwell elements (2.13)."),
+    Key::new("solid.material.youngs_modulus", Kind::Quantity(Stress, closed(1e-6, 10_000.0, "GPa")), Default { value: "210 GPa", reason: "bearing steel" },
+        "Young's modulus.").hint("steel has 210 GPa; check the unit"),
+    Key::new("solid.material.poisson_ratio", Kind::Number(open(-1.0, 0.5, "")), Default { value: "0.3", reason: "bearing steel" },
+        "Poisson's ratio.").hint("at 0.5 a solid cannot change its volume; this law needs less"),
+    Key::new("solid.material.density", Kind::Quantity(Density, closed(1.0, 30_000.0, "kg/m^3")), Depends("7850 kg/m^3, bearing steel; of rubber 1100 kg/m^3"), "Density.").hint("steel has 7850 kg/m^3; check the unit"),
+    Key::new("solid.material.table", Kind::Choice(RUBBERS), Depends(WITH_RUBBER),
+        "Rubber of this table of the source; keys given beside it take the place of what it says, `[[solid.material.maxwell]]` that of all its Maxwell elements."),
+    Key::new("solid.material.rubber_modulus", Kind::Quantity(Stress, closed(1e-6, 1e6, "MPa")), Depends("with `law = \"elastomer\"`; required without `table`"),
+        "C_R of the network; at N = 8 the shear modulus is 1.085 times that.").hint("the source has 0.324 and 0.647 MPa; check the unit").example_of("0.647 MPa"),
+    Key::new("solid.material.chain", Kind::Number(above(1.0, 1e6, "")), Depends("with `law = \"elastomer\"`; 8 unless given"),
+        "N: chains are straight at a stretch of its root.").hint("the source has 8; at 1 chains are straight in the undeformed rubber").example_of("8"),
+    Key::new("solid.material.chain_pull", Kind::Choice(PULLS), Default { value: "five-terms", reason: "as (2.8)" },
+        "Pull of a chain: the five terms of the source, or the inverse Langevin function that they approximate, which has no state beyond the straight chain."),
+    Key::new("solid.material.bulk_ratio", Kind::Number(closed(1.0, 1e6, "")), Depends("with `law = \"elastomer\"`; 100 unless given"),
+        "Bulk modulus over C_R.").group("bulk").hint("the source has 100; many rubbers have 1000").example_of("100"),
+    Key::new("solid.material.bulk_modulus", Kind::Quantity(Stress, closed(1e-6, 1e9, "MPa")), Depends(WITH_RUBBER),
+        "Bulk modulus, in place of `bulk_ratio`.").group("bulk").hint("check the unit").example_of("64.7 MPa"),
+    Key::new("solid.material.maxwell.gamma", Kind::Number(above(0.0, 1e6, "")), Required,
+        "Stiffness of a Maxwell element over the network's deviatoric one.").example_of("0.492"),
+    Key::new("solid.material.maxwell.relaxation_time", Kind::Quantity(Time, closed(1e-15, 1e9, "s")), Required,
+        "Time over which it relaxes.").hint("the source has 1e-7 to 10 s; check the unit").example_of("10 s"),
+
+    Key::new("solid.harmonic.frequencies", Kind::Quantities(Frequency, closed(0.0, 1e9, "Hz")), Depends("required with `[solid.harmonic]`"),
+        "Frequencies at which `statics` gives the complex stiffness, ascending; 0 is the relaxed network.").example_of("0.1 Hz"),
+    Key::new("solid.harmonic.set", Kind::Text, Depends("required with `[solid.harmonic]`"),
+        "Held set that moves; all others stay."),
+    Key::new("solid.harmonic.axis", Kind::Choice(AXES), Depends("required with `[solid.harmonic]`"), "Axis along which it moves."),
+
+    Key::new("solid.mesh.file", Kind::Text, Depends("this or `generate`"),
+        "Mesh file, relative to the scene: Gmsh `.msh` (4.1 or 2.2, text or binary) or Abaqus `.inp` (C3D4, C3D10).").group("mesh"),
+    Key::new("solid.mesh.generate", Kind::Choice(GENERATORS), Depends("this or `file`"),
+        "A mesh made from dimensions; the table under [Meshes that are made](#meshes-that-are-made) says which.").group("mesh"),
+    Key::new("solid.mesh.unit", Kind::Choice(LENGTH_UNITS), Depends("required with `file`"),
+        "Unit of the numbers in the file, which neither format states."),
+    Key::new("solid.mesh.origin", Kind::Vector(Length, PLACE), Depends("none: the mesh lies where its file or its generator has it"),
+        "Point of the mesh's own coordinates that becomes the origin of the scene, in a housing the centre of its bearing: of a bore at (0, 30, 65) mm this point.").example_of("65 mm"),
+    Key::new("solid.mesh.axis", Kind::Choice(AXES), Depends("`x` unless given"),
+        "Axis of the mesh that becomes X of the scene; `y`: Y, Z, X become X, Y, Z; `z`: Z, X, Y do."),
+    Key::new("solid.mesh.order", Kind::Integer { low: 1, high: 2 }, Depends("the file's own; required with `generate`"),
+        "Elements of 4 nodes (1, the source's) or of 10 (2). 2 puts nodes on the edges of a file's four-node elements.")
+        .hint("1 for four-node, 2 for ten-node tetrahedra").example_of("2"),
+    Key::new("solid.mesh.renumber", Kind::Boolean, Default { value: "true", reason: "neighbours in space are neighbours in memory" },
+        "Number nodes and elements for speed; fields are then not in the order of the file."),
+    Key::new("solid.mesh.repair", Kind::Choices(REPAIRS), Default { value: "none", reason: "nothing is repaired unasked" },
+        "Repairs of a file's mesh, each reported: turn inverted elements, join nodes at one place, drop unused nodes."),
+    Key::new("solid.mesh.cavities", Kind::Integer { low: 0, high: 1_000_000 }, Default { value: "0", reason: "an enclosed cavity is usually missing elements" },
+        "Enclosed cavities that are meant to be there."),
+    Key::new("solid.mesh.largest_aspect", Kind::Number(above(1.0, 1e9, "")), Default { value: "1000", reason: "a worse element is a defect" },
+        "Largest aspect of an element, 1 for a regular one; beyond it the mesh is refused.").example_of("1000"),
+    size("solid.mesh.length", "bar, shaft, bushing", "Length along X."),
+    size("solid.mesh.width", "bar (along Y), ring, cage (along X)", "Width."),
+    size("solid.mesh.height", "bar", "Height along Z."),
+    size("solid.mesh.radius", "shaft", "Radius."),
+    size("solid.mesh.inner_radius", "ring, cage", "Inner radius."),
+    size("solid.mesh.inner_diameter", "bushing", "Inner diameter of the rubber."),
+    size("solid.mesh.outer_diameter", "bushing", "Outer diameter of the rubber."),
+    Key::new("solid.mesh.part", Kind::Choice(PARTS), Depends("bushing; `whole` unless given"),
+        "All of a bushing, or its quarter where X and Y are not negative, for a sleeve that moves along Z: hold `x_low` along X and `y_low` along Y, and take forces times four."),
+    size("solid.mesh.outer_radius", "ring, cage, housing-b, -c, -d", "Outer radius; of a pillow block that of its annulus."),
+    Key::new("solid.mesh.stations", Kind::Quantities(Length, PLACE), Depends("shaft, in place of `length`"),
+        "Axial places of a shaft at which a layer of nodes lies, increasing; each is a set `station_1`, ….").example_of("0 mm"),
+    Key::new("solid.mesh.pockets", Kind::Integer { low: 2, high: 200 }, Depends("cage"), "Number of pockets."),
+    size("solid.mesh.pocket_radius", "cage", "Radius of a pocket."),
+    size("solid.mesh.bore_radius", "housings", "Radius of the bore."),
+    size("solid.mesh.side", "housing-a", "Side of the square cuboid."),
+    size("solid.mesh.depth", "housings", "Length along the bore."),
+    size("solid.mesh.centre_height", "housing-b, -c; 1.8 bore radii unless given", "From the bottom to the bore's centre."),
+    size("solid.mesh.base_width", "housing-b, -c; 4.2 bore radii unless given", "Width of the base."),
+    size("solid.mesh.base_height", "housing-b, -c; 0.55 bore radii unless given", "Height of the base."),
+    size("solid.mesh.neck_width", "housing-b, -c; 2.5 bore radii unless given", "Width over both necks."),
+    size("solid.mesh.fillet_radius", "housing-b, -c; 0.35 bore radii unless given", "Radius between necks and base."),
+    size("solid.mesh.half_width", "block", "Half contact width b: the block is 8 b wide (Y), 5 b high (Z, top at 0), 1 b deep (X)."),
+    size("solid.mesh.relief.depth", "with `relief`", "How much lower than the belt the cage's rails are at their edges."),
+    size("solid.mesh.relief.belt_width", "with `relief`", "Width of the cylindrical part of the cage's outer surface."),
+    cells("solid.mesh.cells.along", "bar, shaft", "Cells along X; a shaft with `stations` has as many as keep layers within its length over this number."),
+    cells("solid.mesh.cells.across", "bar", "Cells along Y."),
+    cells("solid.mesh.cells.up", "bar", "Cells along Z."),
+    cells("solid.mesh.cells.around", "ring, housings; bushing: 3 or more, of a quarter 2; shaft: a multiple of 8", "Cells around."),
+    cells("solid.mesh.cells.radial", "ring, shaft, housings, bushing: even", "Cells along the radius; of a shaft outside its core."),
+    cells("solid.mesh.cells.axial", "ring, housings; bushing: of a whole even, of a quarter any", "Cells along X; of a quarter of a bushing along half of it."),
+    cells("solid.mesh.cells.quarter", "cage", "Cells along a quarter of a pocket's edge."),
+    cells("solid.mesh.cells.bar", "cage", "Cells from a pocket's edge to the middle of the bar."),
+    cells("solid.mesh.cells.wall", "cage", "Cells through the wall."),
+    cells("solid.mesh.cells.per_half_width", "block", "Cells per half contact width in the fine zone, 3 b wide and 1.5 b high."),
+    cells("solid.mesh.cells.deep", "block", "Cells along the depth."),
+    Key::new("solid.mesh.cells.growth", GROWTH, EVEN, "Growth of radial steps outwards (ring, housings), of steps outside the fine zone (block).").example_of("1.25"),
+
+    Key::new("solid.mesh.cells.grading", Kind::Number(closed(1.0, 10.0, "")), Depends("bushing; 1, even, unless given"),
+        "How much cells of a bushing crowd at its sleeves and ends, where stresses have no bound at the corners: stations at a part s from the middle stand at 1 − (1 − s) to this power.").example_of("2"),
+
+    Key::new("solid.set.name", Kind::Text, Required, "Name of the set; it joins those of the mesh."),
+    Key::new("solid.set.plane", Kind::Choice(PLANES), Optional, "Surface on the plane square to this axis, through `at`.").group("place"),
+    Key::new("solid.set.at", Kind::Quantity(Length, PLACE), Depends("required with `plane`"), "Place of the plane on its axis."),
+    Key::new("solid.set.cylinder", Kind::Quantity(Length, open(0.0, 100.0, "m")), Optional, "Surface on the cylinder of this radius about X.").group("place"),
+    Key::new("solid.set.low", Kind::Vector(Length, PLACE), Optional, "Nodes in a box: its lowest corner.").group("place"),
+    Key::new("solid.set.high", Kind::Vector(Length, PLACE), Depends("required with `low`"), "Its highest corner."),
+    Key::new("solid.set.tolerance", Kind::Quantity(Length, open(0.0, 100.0, "m")), Depends("1e-6 of the mesh's size"),
+        "How far from the surface a node may lie.").example_of("1 um"),
+
+    Key::new("solid.fixed.set", Kind::Text, Required, "Set whose nodes are held."),
+    Key::new("solid.fixed.x", HELD, Depends("free unless given"), "Held at zero along X (`true`), or displaced."),
+    Key::new("solid.fixed.y", HELD, Depends("free unless given"), "The same along Y."),
+    Key::new("solid.fixed.z", HELD, Depends("free unless given"), "The same along Z."),
+
+    Key::new("solid.load.set", Kind::Text, Required, "Set that is loaded."),
+    Key::new("solid.load.x", FORCE, Optional, "Total force along X, spread over a surface by area, over loose nodes evenly.").hint("check the unit"),
+    Key::new("solid.load.y", FORCE, Optional, "The same along Y.").hint("check the unit"),
+    Key::new("solid.load.z", FORCE, Optional, "The same along Z.").hint("check the unit"),
+    Key::new("solid.load.force", Kind::Vector(crate::scene::text::units::Dimension::Force, closed(-1e9, 1e9, "N")), Optional,
+        "Constant total force along X, Y and Z."),
+    Key::new("solid.load.pressure", PRESSURE, Optional,
+        "Pressure on a surface, positive into the body: a dead load, on the undeformed area and along its normal.").hint("check the unit").example_of("2 MPa"),
+
+    Key::new("solid.probe.name", Kind::Text, Depends("the set's name; required with `at`"), "Name of the columns."),
+    Key::new("solid.probe.set", Kind::Text, Depends("this or `at`"), "Set whose mean displacement is written."),
+    Key::new("solid.probe.at", Kind::Vector(Length, PLACE), Depends("this or `set`"), "Place whose nearest node is written."),
+
+    Key::new("modes.count", Kind::Integer { low: 1, high: 1000 }, Default { value: "12", reason: "six rigid motions of a free body and six more" },
+        "How many natural modes, those of no frequency included."),
+    Key::new("modes.mass", Kind::Choice(MASSES), Default { value: "consistent", reason: "converges fastest" },
+        "Mass matrix: of the shape functions, or diagonal as explicit steps use it."),
+
+    Key::new("numerics.method", Kind::Choice(METHODS), Default { value: "central-differences", reason: "one force evaluation a step" },
+        "Steps of a solid: order 2, or the source's classical Runge-Kutta. 0.8 of the stability limit unless `step` or `step_fraction` is given; a step beyond the limit is refused."),
+    Key::new("numerics.fields_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("a solid by itself: a twentieth of the run; housings and shafts in elements: at the end alone"),
+        "Time from one file of fields of a solid, a housing or a shaft in elements to the next, rounded to whole rows.").example_of("0.1 ms"),
+];
+
+/// Tables in the order of the reference.
+#[rustfmt::skip]
+pub(crate) const TABLES: &[Table] = &[
+    table("solid", "A flexible solid: by itself in place of a bearing, or with one as its housing (`[housing]`).", "[solid]\ndamping = \"77 1/s\""),
+    table("solid.material", "Linear elastic (St. Venant-Kirchhoff), or rubber: `law = \"elastomer\"` with `table = \"3.1\"`, or with `rubber_modulus` and Maxwell elements.",
+        "[solid.material]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = 0.3\ndensity = \"7850 kg/m^3\""),
+    list_table("solid.material.maxwell", "Maxwell elements of a rubber; without them, and without `table`, it is the network alone. As many as wanted.",
+        "[[solid.material.maxwell]]\ngamma = 0.492\nrelaxation_time = \"10 s\""),
+    table("solid.harmonic", "Small vibrations about rest of a solid of rubber, without inertia: complex stiffness K′ + i K″ against the motion of a set, K_d = √(K′² + K″²) (3.13) and η_d = K″/K_d (3.14), the sine of the loss angle, over frequency.",
+        "[solid.harmonic]\nset = \"inner\"\naxis = \"z\"\nfrequencies = [\"0.1 Hz\", \"10 Hz\"]"),
+    table("solid.mesh", "Tetrahedra from a file or from a generator. Faults are refused, not repaired, unless `repair` says so.",
+        "[solid.mesh]\nfile = \"part.msh\"\nunit = \"mm\""),
+    table("solid.mesh.relief", "Rails of a cage lower than its middle; not in the source.",
+        "[solid.mesh.relief]\ndepth = \"0.5 mm\"\nbelt_width = \"13 mm\""),
+    table("solid.mesh.cells", "How fine a generated mesh is.", "[solid.mesh.cells]\nalong = 20\nacross = 2\nup = 2"),
+    list_table("solid.set", "Sets by geometry, beside those of the mesh. As many as wanted.",
+        "[[solid.set]]\nname = \"tip\"\nplane = \"x\"\nat = \"100 mm\""),
+    list_table("solid.fixed", "Supports: sets of nodes that are held or moved. As many as wanted.",
+        "[[solid.fixed]]\nset = \"x_low\"\nx = true\ny = true\nz = { ramp = [\"0 um\", \"5 um\"], duration = \"1 ms\" }"),
+    list_table("solid.load", "Loads on sets: `x`, `y`, `z`, or `force`, or `pressure`. As many as wanted.",
+        "[[solid.load]]\nset = \"x_high\"\nz = \"-100 N\""),
+    list_table("solid.probe", "Nodes or sets whose mean displacement is written.",
+        "[[solid.probe]]\nset = \"x_high\""),
+    table("modes", "Natural modes of a solid.", "[modes]\ncount = 12"),
+];

@@ -1,0 +1,12 @@
+//! The text of a scene: files, parsing, units, `base` and named tables.
+
+pub mod base;
+pub mod document;
+pub mod input_file;
+pub mod items;
+pub mod scopes;
+pub mod source;
+pub mod sweep;
+pub mod tree;
+pub mod units;
+pub mod value;

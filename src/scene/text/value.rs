@@ -1,0 +1,409 @@
+//! One written value against its row of the key table: kind, unit and range.
+
+use crate::numeric::profile::Profile;
+use crate::scene::error::{Problem, shortened};
+use crate::scene::resolve::profile;
+use crate::scene::tables::keys::{Key, Kind, Range, nearest};
+use crate::scene::text::tree::{Node, Value};
+use crate::scene::text::units::{Dimension, QuantityProblem, parse_number, parse_quantity};
+
+/// A value that its key accepts; quantities in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Checked {
+    Text(String),
+    Boolean(bool),
+    Integer(i64),
+    Number(f64),
+    Vector([f64; 3]),
+    Choice(&'static str),
+    Choices(Vec<&'static str>),
+    /// A profile that is written as a table; a constant one is a `Number`.
+    Profile(Profile),
+    /// Which of the kinds of [`Kind::Either`], and the value.
+    Either(usize, f64),
+    /// Pairs of [`Kind::Curve`].
+    Curve(Vec<[f64; 2]>),
+    Quantities(Vec<f64>),
+}
+
+/// A problem and where it is: the offset of the element of a list or profile that has it.
+#[derive(Debug)]
+pub struct ValueError {
+    pub offset: usize,
+    /// Key inside the profile, empty elsewhere.
+    pub within: String,
+    pub problem: Problem,
+}
+
+impl From<(usize, Problem)> for ValueError {
+    fn from((offset, problem): (usize, Problem)) -> ValueError {
+        ValueError { offset, within: String::new(), problem }
+    }
+}
+
+/// Checks `node` against `key`.
+pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
+    let here = |problem| ValueError::from((node.offset, problem));
+    match (key.kind, &node.value) {
+        (Kind::Text, Value::Text(text)) => Ok(Checked::Text(text.clone())),
+        (Kind::Boolean, Value::Boolean(value)) => Ok(Checked::Boolean(*value)),
+        (Kind::Integer { low, high }, Value::Number(text)) => {
+            integer(key, text, low, high).map(Checked::Integer).map_err(here)
+        }
+        (Kind::Choice(choices), Value::Text(text)) => {
+            choice(text, choices).map(Checked::Choice).map_err(here)
+        }
+        (Kind::Choices(choices), Value::List(items)) => choice_list(items, choices, key),
+        (Kind::Number(range), Value::Number(text)) => {
+            number(key, text, range).map(Checked::Number).map_err(here)
+        }
+        (Kind::Quantity(dimension, range), Value::Text(_) | Value::Number(_)) => {
+            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
+        }
+        (Kind::Vector(dimension, range), Value::List(items)) => {
+            let wrong_length =
+                || Problem::NotThreeValues { found: items.len(), example: key.example() };
+            let [x, y, z] = items.as_slice() else {
+                return Err(here(wrong_length()));
+            };
+            let component = |item: &Node| match &item.value {
+                Value::Text(_) | Value::Number(_) => {
+                    quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))
+                }
+                other => Err((item.offset, wrong_kind(key, other))),
+            };
+            Ok(Checked::Vector([component(x)?, component(y)?, component(z)?]))
+        }
+        (Kind::Profile(dimension, range), Value::Text(_) | Value::Number(_)) => {
+            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
+        }
+        (Kind::Profile(dimension, range), Value::Table(entries)) => {
+            profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
+        }
+        (Kind::TrueOrProfile(..), Value::Boolean(value)) => Ok(Checked::Boolean(*value)),
+        (Kind::TrueOrProfile(dimension, range), Value::Text(_) | Value::Number(_)) => {
+            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
+        }
+        (Kind::TrueOrProfile(dimension, range), Value::Table(entries)) => {
+            profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
+        }
+        (Kind::Quantities(dimension, range), Value::List(items)) => {
+            quantities(key, items, node.offset, dimension, range)
+        }
+        (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
+            either(key, kinds, &node.value).map_err(here)
+        }
+        (Kind::Curve(dimension, range, numbers), Value::List(items)) => {
+            curve(key, items, node.offset, dimension, range, numbers)
+        }
+        (_, other) => Err(here(wrong_kind(key, other))),
+    }
+}
+
+/// Checks a value given as bare text, as on the command line: `8`, `5 um`, `true`, `exact`.
+pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
+    let text = text.trim();
+    let value = match key.kind {
+        Kind::Integer { .. } | Kind::Number(_) => Value::Number(text.to_string()),
+        Kind::Boolean => match text {
+            "true" => Value::Boolean(true),
+            "false" => Value::Boolean(false),
+            _ => Value::Text(text.to_string()),
+        },
+        Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
+        Kind::Vector(..)
+        | Kind::Choices(_)
+        | Kind::Curve(..)
+        | Kind::Quantities(..)
+        | Kind::TrueOrProfile(..) => return Err(Problem::NotSweepable),
+        Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
+            Value::Text(text.to_string())
+        }
+    };
+    check(key, &Node { value, offset: 0 }).map_err(|error| error.problem)
+}
+
+/// A value of the first kind that takes it.
+fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, Problem> {
+    let mut first_problem = None;
+    for (index, kind) in kinds.iter().enumerate() {
+        let taken = match (kind, value) {
+            (Kind::Number(range), Value::Number(text)) => number(key, text, *range),
+            (Kind::Quantity(dimension, range), Value::Text(_)) => {
+                quantity(key, value, *dimension, *range)
+            }
+            _ => continue,
+        };
+        match taken {
+            Ok(value) => return Ok(Checked::Either(index, value)),
+            // With a unit of another of the kinds, that kind's answer counts.
+            Err(Problem::WrongUnit { .. } | Problem::UnknownUnit { .. }) => {}
+            Err(problem) => first_problem = first_problem.or(Some(problem)),
+        }
+    }
+    Err(first_problem.unwrap_or_else(|| wrong_kind(key, value)))
+}
+
+/// Pairs of a quantity and a number, `[["0.1 m/s", 0.05], ...]`.
+fn curve(
+    key: &Key,
+    items: &[Node],
+    offset: usize,
+    dimension: Dimension,
+    range: Range,
+    numbers: Range,
+) -> Result<Checked, ValueError> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for item in items {
+        let wrong = || ValueError::from((item.offset, wrong_kind(key, &item.value)));
+        let Value::List(pair) = &item.value else { return Err(wrong()) };
+        let [x, y] = pair.as_slice() else { return Err(wrong()) };
+        let at = quantity(key, &x.value, dimension, range).map_err(|p| (x.offset, p))?;
+        let Value::Number(text) = &y.value else {
+            return Err((y.offset, wrong_kind(key, &y.value)).into());
+        };
+        let value = number(key, text, numbers).map_err(|p| (y.offset, p))?;
+        if points.last().is_some_and(|last| at <= last[0]) {
+            return Err((x.offset, Problem::NotIncreasing { written: shown(&x.value) }).into());
+        }
+        points.push([at, value]);
+    }
+    if points.is_empty() {
+        return Err((offset, wrong_kind(key, &Value::Other("an empty list"))).into());
+    }
+    Ok(Checked::Curve(points))
+}
+
+/// A list of increasing quantities.
+fn quantities(
+    key: &Key,
+    items: &[Node],
+    offset: usize,
+    dimension: Dimension,
+    range: Range,
+) -> Result<Checked, ValueError> {
+    let mut values: Vec<f64> = Vec::new();
+    for item in items {
+        let value = quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))?;
+        if values.last().is_some_and(|last| value <= *last) {
+            let written = shown(&item.value);
+            return Err((item.offset, Problem::NotIncreasing { written }).into());
+        }
+        values.push(value);
+    }
+    if values.is_empty() {
+        return Err((offset, wrong_kind(key, &Value::Other("an empty list"))).into());
+    }
+    Ok(Checked::Quantities(values))
+}
+
+/// A kind in words.
+fn expected(kind: Kind) -> String {
+    match kind {
+        Kind::Text => "a text in quotes".to_string(),
+        Kind::Boolean => "true or false".to_string(),
+        Kind::Integer { low, high } => format!("a whole number from {low} to {high}"),
+        Kind::Choice(choices) => format!("one of {}", quoted(choices)),
+        Kind::Choices(choices) => format!("a list out of {}", quoted(choices)),
+        Kind::Number(range) => format!("a plain number, {range}"),
+        Kind::Quantity(dimension, range) => format!("{} with its unit, {range}", dimension.name()),
+        Kind::Vector(dimension, _) => {
+            format!("a list of three values with units, each {}", dimension.name())
+        }
+        Kind::Profile(dimension, range) => {
+            format!("{} with its unit, {range}, or a profile of it over time", dimension.name())
+        }
+        Kind::Either(kinds) => {
+            kinds.iter().map(|kind| expected(*kind)).collect::<Vec<_>>().join(", or ")
+        }
+        Kind::Curve(dimension, ..) => {
+            format!("a list of pairs, each {} with its unit and a plain number", dimension.name())
+        }
+        Kind::Quantities(dimension, _) => {
+            format!("a list of increasing values with units, each {}", dimension.name())
+        }
+        Kind::TrueOrProfile(dimension, range) => {
+            format!(
+                "true, or {} with its unit, {range}, or a profile of it over time",
+                dimension.name()
+            )
+        }
+    }
+}
+
+fn wrong_kind(key: &Key, found: &Value) -> Problem {
+    // A choice that looks like a number was meant as the text of it.
+    let meant = match (key.kind, found) {
+        (Kind::Choice(choices), Value::Number(text)) => choices.iter().find(|word| **word == text),
+        _ => None,
+    };
+    let example = meant.map_or_else(|| key.example(), |word| format!("\"{word}\""));
+    Problem::WrongKind {
+        expected: expected(key.kind),
+        found: described(found),
+        advice: format!("write {} = {example}", key.name()),
+    }
+}
+
+/// What was found, for a sentence.
+pub(crate) fn described(found: &Value) -> String {
+    match found {
+        Value::Text(_) => format!("the text {}", shown(found)),
+        Value::Number(_) => format!("the number {}", shown(found)),
+        other => shown(other),
+    }
+}
+
+/// A value as it stands in the file.
+pub(crate) fn shown(value: &Value) -> String {
+    match value {
+        Value::Text(text) => format!("\"{}\"", shortened(text)),
+        Value::Number(text) => shortened(text),
+        Value::Boolean(value) => value.to_string(),
+        other => other.description().to_string(),
+    }
+}
+
+pub(crate) fn quoted(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+    quoted.join(", ")
+}
+
+fn integer(key: &Key, text: &str, low: i64, high: i64) -> Result<i64, Problem> {
+    let allowed = format!("a whole number from {low} to {high}");
+    let written = shortened(text);
+    let value = match text.parse::<i64>() {
+        Ok(value) => value,
+        Err(_) => match parse_number(text) {
+            // So large that it is out of range whatever it is.
+            Ok(value) if value.fract() == 0.0 && value.abs() > 1e15 => i64::MAX,
+            Err(QuantityProblem::NotFinite) => return Err(Problem::NotFinite { written, allowed }),
+            _ => {
+                let example = key.example();
+                return Err(Problem::NotANumber {
+                    written,
+                    wanted: "a whole number",
+                    allowed,
+                    example,
+                });
+            }
+        },
+    };
+    if (low..=high).contains(&value) {
+        Ok(value)
+    } else {
+        Err(Problem::OutOfRange { written, allowed, advice: key.hint })
+    }
+}
+
+fn choice(text: &str, choices: &'static [&'static str]) -> Result<&'static str, Problem> {
+    choices.iter().find(|choice| **choice == text).copied().ok_or_else(|| Problem::UnknownChoice {
+        written: format!("\"{}\"", shortened(text)),
+        nearest: meant(text, choices),
+        allowed: choices,
+    })
+}
+
+/// The choice most like what is written; none where two are equally like it, as those of numbers are.
+fn meant(text: &str, choices: &'static [&'static str]) -> Option<String> {
+    let first = nearest(text, choices.iter().copied(), 0.5);
+    let last = nearest(text, choices.iter().rev().copied(), 0.5);
+    first.filter(|_| first == last).map(str::to_string)
+}
+
+fn choice_list(
+    items: &[Node],
+    choices: &'static [&'static str],
+    key: &Key,
+) -> Result<Checked, ValueError> {
+    let mut chosen = Vec::new();
+    for item in items {
+        let Value::Text(text) = &item.value else {
+            return Err((item.offset, wrong_kind(key, &item.value)).into());
+        };
+        let word = choice(text, choices).map_err(|problem| (item.offset, problem))?;
+        if chosen.contains(&word) {
+            let written = format!("\"{word}\"");
+            return Err((item.offset, Problem::RepeatedChoice { written }).into());
+        }
+        chosen.push(word);
+    }
+    Ok(Checked::Choices(chosen))
+}
+
+fn number(key: &Key, text: &str, range: Range) -> Result<f64, Problem> {
+    let written = shortened(text);
+    let allowed = range.to_string();
+    let value = parse_number(text).map_err(|problem| match problem {
+        QuantityProblem::NotFinite => Problem::NotFinite { written: written.clone(), allowed },
+        QuantityProblem::DecimalComma => {
+            Problem::DecimalComma { written: written.clone(), allowed }
+        }
+        QuantityProblem::WrongDimension { .. } | QuantityProblem::UnknownUnit { .. } => {
+            Problem::UnitOnPlainNumber { written: written.clone(), allowed }
+        }
+        QuantityProblem::NoNumber | QuantityProblem::NoUnit { .. } => Problem::NotANumber {
+            written: written.clone(),
+            wanted: "a number",
+            allowed,
+            example: key.example(),
+        },
+    })?;
+    in_range(key, value, &written, range, None)
+}
+
+pub(crate) fn quantity(
+    key: &Key,
+    value: &Value,
+    dimension: Dimension,
+    range: Range,
+) -> Result<f64, Problem> {
+    let (Value::Text(text) | Value::Number(text)) = value else {
+        return Err(wrong_kind(key, value));
+    };
+    let written = shown(value);
+    let allowed = || range.to_string();
+    match parse_quantity(text, dimension) {
+        Ok(quantity) => in_range(key, quantity.si, &written, range, Some(dimension)),
+        Err(problem) => Err(match problem {
+            QuantityProblem::NoUnit { number } => Problem::MissingUnit {
+                written,
+                number: shortened(&number),
+                dimension,
+                suggested: key.usual_unit(dimension, range),
+            },
+            QuantityProblem::NoNumber => Problem::NotANumber {
+                written,
+                wanted: "a number with a unit",
+                allowed: allowed(),
+                example: key.example(),
+            },
+            QuantityProblem::DecimalComma => Problem::DecimalComma { written, allowed: allowed() },
+            QuantityProblem::NotFinite => Problem::NotFinite { written, allowed: allowed() },
+            QuantityProblem::WrongDimension { unit, belongs_to } => {
+                Problem::WrongUnit { written, unit, belongs_to, dimension }
+            }
+            QuantityProblem::UnknownUnit { unit, nearest, .. } => Problem::UnknownUnit {
+                written,
+                unit: shortened(&unit),
+                dimension,
+                nearest: nearest.map(str::to_string),
+            },
+        }),
+    }
+}
+
+fn in_range(
+    key: &Key,
+    value: f64,
+    written: &str,
+    range: Range,
+    dimension: Option<Dimension>,
+) -> Result<f64, Problem> {
+    if range.contains(value, dimension) {
+        Ok(value)
+    } else {
+        let written = written.to_string();
+        Err(Problem::OutOfRange { written, allowed: range.to_string(), advice: key.hint })
+    }
+}

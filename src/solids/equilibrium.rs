@@ -1,0 +1,417 @@
+//! Static equilibrium of a solid by Newton's method.
+
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::counts::Counts;
+use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, contact};
+use crate::kinematics::strain::Mat3;
+use crate::kinematics::vec3::{Vec3, norm};
+use crate::numeric::sparse::{Factor, FactorError, SymmetricMatrix};
+use crate::solids::contact::CylinderContact;
+pub use crate::solids::equilibrium_error::EquilibriumError;
+use crate::solids::equilibrium_error::Pivot;
+use crate::solids::model::{Prescribed, SolidModel, centre};
+use crate::solids::stress::first_inverted;
+use crate::solids::tangent::{MassMatrix, PRESCRIBED, Unknowns, add_at_node, pattern, stiffness};
+use crate::solids::trust::{Placed, farthest, size};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquilibriumOptions {
+    /// Largest unbalanced force, as a fraction of the largest force at work.
+    pub tolerance: f64,
+    /// As much where rounding lets it fall no further; see [`EquilibriumOptions::default`].
+    pub rounding: f64,
+    pub most_iterations: usize,
+    /// Load steps are halved until they converge, down to this fraction of the load.
+    pub smallest_load_step: f64,
+    /// Which masses gravity pulls at. Lumped ones give the state in which explicit steps stay at
+    /// rest, for ten-node elements at the price of an order of convergence.
+    pub gravity: MassMatrix,
+}
+
+impl Default for EquilibriumOptions {
+    fn default() -> Self {
+        EquilibriumOptions {
+            // Rounding of nodal forces of stiff elements under small loads leaves about 1e-11.
+            tolerance: 1e-10,
+            // Towards ν = 1/2 the stresses of an element grow as 1/(1 − 2ν) while their sum at a node
+            // does not, and rounding leaves so much more: 7e-10 of a bent bar at ν = 0.49999. 1e-8 is
+            // still far below what meshes are good to.
+            rounding: 1e-8,
+            most_iterations: 30,
+            smallest_load_step: 1.0 / 1024.0,
+            gravity: MassMatrix::Consistent,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// m, one for each node.
+    pub displacement: Vec<Vec3>,
+    /// Forces of the supports on the nodes, N; zero on free components.
+    pub reactions: Vec<Vec3>,
+    /// Largest unbalanced force over the largest force at work.
+    pub residual: f64,
+    pub iterations: usize,
+    pub factorisations: usize,
+    /// How often each stage ran.
+    pub ran: Counts,
+}
+
+/// Equilibrium under the loads and prescribed displacements at time `t`.
+///
+/// # Errors
+/// A body that is free to move, no convergence, or only with an element turned inside out.
+pub fn equilibrium(
+    model: &SolidModel,
+    t: f64,
+    options: &EquilibriumOptions,
+) -> Result<Equilibrium, EquilibriumError> {
+    equilibrium_over(model, Unknowns::new(model), t, options)
+}
+
+/// The same over unknowns that are numbered already.
+///
+/// # Errors
+/// As [`equilibrium`].
+pub fn equilibrium_over(
+    model: &SolidModel,
+    unknowns: Unknowns,
+    t: f64,
+    options: &EquilibriumOptions,
+) -> Result<Equilibrium, EquilibriumError> {
+    Ok(solve(Newton::new(model, unknowns, t, options))?.finish())
+}
+
+/// A solid pressed by a rigid cylinder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactEquilibrium {
+    pub solid: Equilibrium,
+    pub sum: ContactSum,
+    /// The nodes that touch and the force on each, N.
+    pub nodes: Vec<(ContactNode, Vec3)>,
+}
+
+/// Equilibrium under the loads, prescribed displacements and cylinder at time `t`, from the
+/// displacements `start` (m, one for each node), or undeformed.
+///
+/// # Errors
+/// As [`equilibrium`].
+pub fn equilibrium_in_contact(
+    model: &SolidModel,
+    t: f64,
+    contact: &CylinderContact,
+    start: Option<&[Vec3]>,
+    options: &EquilibriumOptions,
+) -> Result<ContactEquilibrium, EquilibriumError> {
+    let mut newton = Newton::new(model, Unknowns::new(model), t, options);
+    if let Some(start) = start {
+        newton.displacement.copy_from_slice(start);
+    }
+    newton.contact = Some(contact);
+    let newton = solve(newton)?;
+    let sum = newton.sum;
+    let nodes = newton.touching.iter().map(|touching| (touching.node, touching.force)).collect();
+    Ok(ContactEquilibrium { solid: newton.finish(), sum, nodes })
+}
+
+fn solve(mut newton: Newton) -> Result<Newton, EquilibriumError> {
+    let options = newton.options;
+    let (mut reached, mut step) = (0.0, 1.0);
+    while reached < 1.0 {
+        let wanted = f64::min(reached + step, 1.0);
+        let before = newton.displacement.clone();
+        let outcome = newton.converge(wanted).and_then(|()| newton.refuse_inverted(wanted));
+        let Err(error) = outcome else {
+            reached = wanted;
+            continue;
+        };
+        newton.displacement = before;
+        // Without memory or with a part that is free to move smaller steps are of no use.
+        match &error {
+            EquilibriumError::Factor(FactorError::NoMemory { .. }) => return Err(error),
+            EquilibriumError::Factor(_) => newton.refuse_free()?,
+            _ => {}
+        }
+        if 0.5 * step < options.smallest_load_step {
+            return Err(newton.with_cause(error, reached));
+        }
+        newton.stale = true;
+        step *= 0.5;
+    }
+    Ok(newton)
+}
+
+/// A node under the cylinder.
+struct Touching {
+    node: ContactNode,
+    force: Vec3,
+    stiffness: Mat3,
+}
+
+struct Newton<'a> {
+    model: &'a SolidModel,
+    options: &'a EquilibriumOptions,
+    t: f64,
+    unknowns: Unknowns,
+    matrix: SymmetricMatrix,
+    factor: Option<Factor>,
+    /// Whether the factors are of another state than the last one solved for.
+    stale: bool,
+    /// Whether the stiffness at rest has been factorised, so that no part is free to move.
+    held: bool,
+    /// Largest displacement of the whole load by the first stiffness, m.
+    linear: Option<Placed>,
+    displacement: Vec<Vec3>,
+    external: Vec<[f64; 4]>,
+    contact: Option<&'a CylinderContact>,
+    /// As of the last evaluation of the contact.
+    touching: Vec<Touching>,
+    sum: ContactSum,
+    residual: f64,
+    iterations: usize,
+    factorisations: usize,
+    ran: Counts,
+}
+
+impl<'a> Newton<'a> {
+    fn new(
+        model: &'a SolidModel,
+        unknowns: Unknowns,
+        t: f64,
+        options: &'a EquilibriumOptions,
+    ) -> Self {
+        let mut external = vec![[0.0; 4]; model.mass.len()];
+        let mut ran = Counts::default();
+        match options.gravity {
+            MassMatrix::Consistent => model.add_static_forces(t, &mut external, &mut ran),
+            MassMatrix::Lumped => {
+                model.add_external_forces(model.acting(), t, &mut external, &mut ran);
+            }
+        }
+        Newton {
+            matrix: pattern(&model.problem, &unknowns),
+            unknowns,
+            factor: None,
+            stale: true,
+            held: false,
+            linear: None,
+            displacement: vec![[0.0; 3]; model.mass.len()],
+            external,
+            contact: None,
+            touching: Vec::new(),
+            sum: ContactSum::default(),
+            residual: f64::NAN,
+            iterations: 0,
+            factorisations: 0,
+            ran,
+            model,
+            options,
+            t,
+        }
+    }
+
+    /// Forces may balance on an element that is turned inside out: no state of a body.
+    fn refuse_inverted(&self, fraction: f64) -> Result<(), EquilibriumError> {
+        match first_inverted(self.model, &self.displacement) {
+            None => Ok(()),
+            Some((index, ratio)) => {
+                let at = centre(&self.model.problem, index);
+                let element = self.model.labels.element(index);
+                let poisson_ratio = self.model.problem.material.poisson_ratio();
+                Err(EquilibriumError::Inverted { fraction, element, at, ratio, poisson_ratio })
+            }
+        }
+    }
+
+    /// Internal forces at the present displacements, N.
+    fn internal(&mut self) -> Vec<[f64; 4]> {
+        self.ran.add(Stage::Elements, self.model.problem.elements.len() as u64);
+        let padded: Vec<_> = self.displacement.iter().map(|u| [u[0], u[1], u[2], 0.0]).collect();
+        let mut forces = vec![[0.0; 4]; padded.len()];
+        self.model.add_internal_forces(&padded, &mut forces);
+        forces
+    }
+
+    /// Adds the forces of the cylinder, gone a fraction of its way, N. Says whether other nodes touch
+    /// than before, and how large a force rounding may leave.
+    fn add_contact(&mut self, fraction: f64, forces: &mut [[f64; 4]]) -> (bool, f64) {
+        let Some(of) = self.contact else { return (false, 0.0) };
+        let (cylinder, frame) = of.part_way(self.t, fraction);
+        let displacement = &self.displacement;
+        let mut found = Vec::new();
+        let mut stiffest = 0.0f64;
+        self.sum = contact(
+            &cylinder,
+            &frame,
+            of.penalty,
+            &of.nodes,
+            |n| displacement[n as usize],
+            |node, touch, stiffness, force| {
+                for i in 0..3 {
+                    forces[node.node as usize][i] += force[i];
+                }
+                stiffest = stiffest.max(stiffness);
+                // Penetration over radius is all that is left out: some 1e-7 where it matters.
+                let stiffness = touch.normal_stiffness(stiffness);
+                found.push(Touching { node: *node, force, stiffness });
+            },
+        );
+        let same = found.len() == self.touching.len()
+            && found.iter().zip(&self.touching).all(|(a, b)| a.node.node == b.node.node);
+        self.touching = found;
+        // A penetration is a difference of lengths as large as these.
+        let lengths = cylinder.radius + norm(frame.centre);
+        (!same, 8.0 * f64::EPSILON * lengths * stiffest)
+    }
+
+    /// Newton iterations at a fraction of the load. The factors of an earlier state are kept as
+    /// long as they bring the residual down tenfold a step.
+    fn converge(&mut self, fraction: f64) -> Result<(), EquilibriumError> {
+        for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
+            self.displacement[*node as usize][*axis] = fraction * profile.value(self.t);
+        }
+        let mut last = f64::INFINITY;
+        let mut fresh = false;
+        for iteration in 0..=self.options.most_iterations {
+            let mut internal = self.internal();
+            let (changed, rounding) = self.add_contact(fraction, &mut internal);
+            self.stale |= changed;
+            let mut right = vec![0.0; self.unknowns.count];
+            let (mut largest, mut scale, mut finite) = (0.0f64, 0.0f64, true);
+            for (n, of) in self.unknowns.of.iter().enumerate() {
+                for i in 0..3 {
+                    scale = scale.max(internal[n][i].abs()).max(self.external[n][i].abs());
+                    if of[i] != PRESCRIBED {
+                        let unbalanced = internal[n][i] + fraction * self.external[n][i];
+                        right[of[i]] = unbalanced;
+                        // `max` would drop what is not a number.
+                        finite &= unbalanced.is_finite();
+                        largest = largest.max(unbalanced.abs());
+                    }
+                }
+            }
+            self.residual = if scale > 0.0 { largest / scale } else { 0.0 };
+            if finite && largest <= f64::max(self.options.tolerance * scale, rounding) {
+                return Ok(());
+            }
+            // Factors of the very state it was at, no node more or less in contact, and yet the step
+            // did not halve the residual: what is left is rounding.
+            let stagnates = fresh && !changed && largest > 0.5 * last;
+            if finite && stagnates && largest <= self.options.rounding * scale {
+                return Ok(());
+            }
+            let diverged = !finite || (iteration > 3 && largest > 1e3 * last);
+            if iteration == self.options.most_iterations || diverged {
+                return Err(EquilibriumError::NotConverged {
+                    fraction,
+                    residual: largest,
+                    scale,
+                    iterations: iteration,
+                    poisson_ratio: self.model.problem.material.poisson_ratio(),
+                });
+            }
+            fresh = self.stale || largest > 0.1 * last;
+            if fresh {
+                self.refactor()?;
+            }
+            last = largest;
+            self.factor.as_ref().expect("factorised above").solve(&mut right);
+            for (n, of) in self.unknowns.of.iter().enumerate() {
+                for i in 0..3 {
+                    if of[i] != PRESCRIBED {
+                        self.displacement[n][i] += right[of[i]];
+                    }
+                }
+            }
+            self.iterations += 1;
+            if self.linear.is_none() {
+                let Placed { value, at } = farthest(self.model, &self.displacement);
+                self.linear = Some(Placed { value: value / fraction, at });
+            }
+        }
+        unreachable!("the loop returns at its last iteration")
+    }
+
+    fn refactor(&mut self) -> Result<(), EquilibriumError> {
+        stiffness(self.model, &self.unknowns, &self.displacement, &mut self.matrix);
+        for touching in &self.touching {
+            let Touching { node, stiffness, .. } = touching;
+            add_at_node(&self.unknowns, node.node, stiffness, &mut self.matrix);
+        }
+        match &mut self.factor {
+            Some(factor) => factor.refactor(&self.matrix).map_err(EquilibriumError::Factor)?,
+            None => {
+                let factor =
+                    self.unknowns.factor(&self.matrix).map_err(EquilibriumError::Factor)?;
+                self.factor = Some(factor);
+            }
+        }
+        self.held |= self.displacement.iter().all(|u| *u == [0.0; 3]);
+        self.stale = false;
+        self.factorisations += 1;
+        Ok(())
+    }
+
+    /// Factorises the stiffness at rest, unless that has been done.
+    fn refuse_free(&mut self) -> Result<(), EquilibriumError> {
+        if self.held {
+            return Ok(());
+        }
+        let rest = vec![[0.0; 3]; self.displacement.len()];
+        let before = std::mem::replace(&mut self.displacement, rest);
+        let outcome = self.refactor();
+        self.displacement = before;
+        match outcome {
+            Err(EquilibriumError::Factor(FactorError::NotPositiveDefinite { pivot })) => {
+                let pivot = Pivot::of(self.model, &self.unknowns, pivot);
+                Err(EquilibriumError::Free { pivot })
+            }
+            other => other,
+        }
+    }
+
+    /// Why the last step failed, from the displacements before it; at rest the body is sound.
+    fn with_cause(&self, error: EquilibriumError, reached: f64) -> EquilibriumError {
+        match error {
+            EquilibriumError::Factor(FactorError::NotPositiveDefinite { pivot }) => {
+                EquilibriumError::TooLarge {
+                    reached,
+                    moved: farthest(self.model, &self.displacement).into(),
+                    pivot: Pivot::of(self.model, &self.unknowns, pivot).into(),
+                    linear: self.linear.unwrap_or_default().into(),
+                    size: size(self.model),
+                    poisson_ratio: self.model.problem.material.poisson_ratio(),
+                }
+            }
+            other => other,
+        }
+    }
+
+    fn finish(mut self) -> Equilibrium {
+        let mut internal = self.internal();
+        for Touching { node, force, .. } in &self.touching {
+            for i in 0..3 {
+                internal[node.node as usize][i] += force[i];
+            }
+        }
+        let reactions = (0..self.displacement.len())
+            .map(|n| {
+                [0, 1, 2].map(|i: usize| {
+                    let held = self.unknowns.of[n][i] == PRESCRIBED;
+                    if held { -internal[n][i] - self.external[n][i] } else { 0.0 }
+                })
+            })
+            .collect();
+        self.ran.add(Stage::Supports, self.unknowns.held() as u64);
+        self.ran.add(Stage::SolidStatics, self.factorisations as u64);
+        Equilibrium {
+            ran: self.ran,
+            reactions,
+            displacement: self.displacement,
+            residual: self.residual,
+            iterations: self.iterations,
+            factorisations: self.factorisations,
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Shapes of a free elastic body: natural ones up to a frequency, and beside them its static answers to loads at
+//! chosen coordinates, as far as the natural ones leave these out.
+//!
+//! Both are orthogonal to each other and to the body's rigid motions under its mass. A load at a chosen coordinate is so
+//! answered exactly as long as it is slow; of one at frequency f what is missed is about (f/f_cut)² of the part of the
+//! compliance that the natural shapes left out would have had.
+
+use crate::members::shaft_modes::ShapesError;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Mass and stiffness, and motions without strain that are orthogonal under the mass.
+pub(crate) struct FreeBody<'m> {
+    pub mass: &'m DMatrix<f64>,
+    pub stiffness: &'m DMatrix<f64>,
+    pub rigid: &'m [DVector<f64>],
+}
+
+/// Of a modal mass of 1 kg each, one a column.
+pub(crate) struct FreeShapes {
+    /// rad/s.
+    pub frequencies: Vec<f64>,
+    pub shapes: DMatrix<f64>,
+    /// How many of them are natural ones; static answers follow.
+    pub natural: usize,
+    pub cut: Cut,
+}
+
+/// What the shapes leave out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cut {
+    /// Lowest natural frequency that is not among them, rad/s; none where all are.
+    pub above: f64,
+    /// Largest part of the static compliance (beside rigid motion) at a hold that lies above.
+    pub share: f64,
+}
+
+/// Static answers that differ by less than this part of themselves from the others are none of their own.
+const DEPENDENT: f64 = 1e-10;
+
+impl FreeBody<'_> {
+    /// Natural shapes below `limit` (rad/s), `most` of them, and the static answers to loads at `rows`.
+    ///
+    /// # Errors
+    /// A mass that is not positive, a motion without strain that is not among the rigid ones.
+    pub fn shapes(
+        &self,
+        limit: f64,
+        most: usize,
+        rows: &[usize],
+    ) -> Result<FreeShapes, ShapesError> {
+        let (frequencies, all) = self.natural()?;
+        let kept: usize = frequencies.iter().take(most).filter(|w| **w <= limit).count();
+        let left_out = frequencies.len() - kept;
+        // Amplitudes of the natural shapes left out in each static answer.
+        let answer = |k: usize, row: usize| {
+            all[(row, kept + k)] / (frequencies[kept + k] * frequencies[kept + k])
+        };
+        let mut answers = DMatrix::from_fn(left_out, rows.len(), |k, j| answer(k, rows[j]));
+        let share = |row: &usize| {
+            let part =
+                |k: usize| all[(*row, k)] * all[(*row, k)] / (frequencies[k] * frequencies[k]);
+            let total: f64 = (0..frequencies.len()).map(part).sum();
+            let beyond: f64 = (kept..frequencies.len()).map(part).sum();
+            if total > 0.0 { beyond / total } else { 0.0 }
+        };
+        let share = rows.iter().map(share).fold(0.0, f64::max);
+        for mut column in answers.column_iter_mut() {
+            let size = column.norm();
+            if size > 0.0 {
+                column /= size;
+            }
+        }
+        let (static_frequencies, combined) = independent(&answers, &frequencies[kept..]);
+        let count = kept + static_frequencies.len();
+        let mut shapes = DMatrix::zeros(self.mass.nrows(), count);
+        shapes.columns_mut(0, kept).copy_from(&all.columns(0, kept));
+        shapes.columns_mut(kept, count - kept).copy_from(&(all.columns(kept, left_out) * combined));
+        let above = frequencies.get(kept).copied().unwrap_or(f64::INFINITY);
+        let frequencies: Vec<f64> =
+            frequencies[..kept].iter().chain(&static_frequencies).copied().collect();
+        Ok(FreeShapes { frequencies, shapes, natural: kept, cut: Cut { above, share } })
+    }
+
+    /// All natural shapes beside the rigid motions, in the order of their frequencies (rad/s).
+    fn natural(&self) -> Result<(Vec<f64>, DMatrix<f64>), ShapesError> {
+        let inertia = |motion: &DVector<f64>| (self.mass * motion).dot(motion);
+        let weights: Vec<f64> = self.rigid.iter().map(inertia).collect();
+        if let Some(mass) = weights.first().filter(|mass| mass.is_nan() || **mass <= 0.0) {
+            return Err(ShapesError::Mass(*mass));
+        }
+        let count = self.mass.nrows();
+        let stiffest = (0..count).map(|i| self.stiffness[(i, i)] / self.mass[(i, i)]);
+        // Far above rounding, far below the stiffest element.
+        let shift = 1e-4 * stiffest.fold(f64::INFINITY, f64::min);
+        let found = lowest(self.mass, self.stiffness, shift, count);
+        let (modes, _) = found.ok_or(ShapesError::Stiffness)?;
+        // The first are the rigid motions.
+        let first = self.rigid.len().min(count);
+        let mut shapes = DMatrix::zeros(count, count - first);
+        let mut frequencies = Vec::with_capacity(count - first);
+        for column in first..count {
+            let mut shape = modes.column(column).into_owned();
+            // Rounding leaves some rigid motion in a shape, and its frequency to the square root of its part.
+            for (motion, weight) in self.rigid.iter().zip(&weights) {
+                let part = (self.mass * motion).dot(&shape) / weight;
+                shape -= motion * part;
+            }
+            shape /= inertia(&shape).sqrt();
+            frequencies.push((self.stiffness * &shape).dot(&shape).sqrt());
+            shapes.set_column(column - first, &shape);
+        }
+        let told = |frequency: &f64| frequency.is_finite() && *frequency > 0.0;
+        if !frequencies.iter().all(told) {
+            return Err(ShapesError::Range);
+        }
+        Ok((frequencies, shapes))
+    }
+}
+
+/// The `modes` lowest natural motions of unit modal mass and their frequencies' squares; none where `stiffness` with
+/// `shift` of the mass is not positive.
+///
+/// The inverse problem, M x = μ (K + σM) x: its largest values are the lowest frequencies, which rounding touches least; the
+/// shift σ lets rigid motions in.
+pub(crate) fn lowest(
+    mass: &DMatrix<f64>,
+    stiffness: &DMatrix<f64>,
+    shift: f64,
+    modes: usize,
+) -> Option<(DMatrix<f64>, Vec<f64>)> {
+    let shifted = stiffness + mass * shift;
+    let factor = shifted.cholesky()?.unpack();
+    let half = factor.solve_lower_triangular(mass)?;
+    let inverse = factor.solve_lower_triangular(&half.transpose())?;
+    let eigen = ((&inverse + inverse.transpose()) * 0.5).symmetric_eigen();
+    let mut order: Vec<usize> = (0..mass.nrows()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    order.truncate(modes);
+    let mut shapes = DMatrix::zeros(mass.nrows(), order.len());
+    let mut squares = Vec::with_capacity(order.len());
+    for (column, &mode) in order.iter().enumerate() {
+        let value = eigen.eigenvalues[mode];
+        squares.push(1.0 / value - shift);
+        let shape = factor.tr_solve_lower_triangular(&eigen.eigenvectors.column(mode))?;
+        shapes.set_column(column, &(shape / value.sqrt()));
+    }
+    Some((shapes, squares))
+}
+
+/// Combinations of `answers` (columns of amplitudes of shapes of these frequencies) that are orthogonal under mass and
+/// stiffness, and their frequencies.
+fn independent(answers: &DMatrix<f64>, frequencies: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
+    let mass = answers.transpose() * answers;
+    if answers.is_empty() {
+        return (Vec::new(), DMatrix::zeros(answers.nrows(), 0));
+    }
+    let gram = SymmetricEigen::new(mass);
+    let most = gram.eigenvalues.max();
+    let used: Vec<usize> =
+        (0..gram.eigenvalues.len()).filter(|i| gram.eigenvalues[*i] > DEPENDENT * most).collect();
+    if used.is_empty() {
+        return (Vec::new(), DMatrix::zeros(answers.nrows(), 0));
+    }
+    let basis = DMatrix::from_fn(answers.ncols(), used.len(), |i, j| {
+        gram.eigenvectors[(i, used[j])] / gram.eigenvalues[used[j]].sqrt()
+    });
+    let basis = answers * basis;
+    let springs = DVector::from_fn(frequencies.len(), |k, _| frequencies[k] * frequencies[k]);
+    let stiffness = basis.transpose() * DMatrix::from_diagonal(&springs) * &basis;
+    let eigen = SymmetricEigen::new(stiffness);
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    let frequencies = order.iter().map(|i| eigen.eigenvalues[*i].sqrt()).collect();
+    let chosen =
+        DMatrix::from_fn(order.len(), order.len(), |i, j| eigen.eigenvectors[(i, order[j])]);
+    (frequencies, basis * chosen)
+}

@@ -1,0 +1,369 @@
+//! A flexible solid as plain data, and with everything precomputed.
+
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::counts::Counts;
+use crate::assembly::plan::solid::{Method, SolidSteps};
+use crate::ch2_housing::elastomer::ElastomerError;
+use crate::ch2_housing::linear_elastic::LinearElastic;
+use crate::elements::ElementError;
+use crate::elements::tet4::Tet4;
+use crate::elements::tet10::{self, Tet10};
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::tet_mesh::Elements;
+use crate::numeric::clock::rounded;
+use crate::numeric::profile::Profile;
+use crate::solids::labels::{Labels, node_text};
+use crate::solids::tet4_blocks::Node;
+use crate::solids::{tet4_blocks, tet10_blocks};
+use thiserror::Error;
+
+/// What mass-proportional damping brakes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DampedMotion {
+    /// All motion (2.7).
+    #[default]
+    Absolute,
+    /// Motion relative to the body's own mean translation and rotation, for a body that spins.
+    RelativeToRigid,
+}
+
+/// Forces on nodes that grow and fade together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load {
+    /// Node, force in N at profile value 1.
+    pub forces: Vec<(u32, Vec3)>,
+    pub profile: Profile,
+}
+
+/// One displacement component whose course is given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prescribed {
+    pub node: u32,
+    /// 0, 1 or 2 for X, Y, Z.
+    pub axis: usize,
+    /// Displacement over time, m.
+    pub profile: Profile,
+}
+
+/// A solid of one material, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidProblem {
+    /// Undeformed places, m.
+    pub nodes: Vec<Vec3>,
+    pub elements: Elements,
+    pub material: LinearElastic,
+    /// kg/m³.
+    pub density: f64,
+    /// Damping force per mass and velocity, 1/s: the coefficient of (2.7) divided by the mass.
+    pub damping: f64,
+    pub damped_motion: DampedMotion,
+    /// Held or moved displacement components.
+    pub prescribed: Vec<Prescribed>,
+    pub loads: Vec<Load>,
+    /// m/s².
+    pub gravity: Vec3,
+}
+
+/// What cannot be set up or went wrong; elements and nodes by their [`Labels`], `at` undeformed, m.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SolidError {
+    #[error("element {element} at {}: {source}; check the mesh", place(at))]
+    Element { element: u64, at: Vec3, source: ElementError },
+    #[error("density is {0} kg/m3; it must be positive and finite")]
+    Density(f64),
+    #[error("damping is {0} 1/s; it must be zero or positive, and finite")]
+    Damping(f64),
+    #[error("node {node} does not exist: the mesh has {count} nodes")]
+    NoSuchNode { node: u32, count: usize },
+    #[error("{} belongs to no element, so it has no mass; drop it from the mesh", node_text(node))]
+    NoMass { node: Option<u64> },
+    #[error("axis {axis} of node {node} is prescribed; axes are 0, 1 and 2")]
+    NoSuchAxis { node: u32, axis: usize },
+    #[error("axis {axis} of node {node} is prescribed twice")]
+    PrescribedTwice { node: u32, axis: usize },
+    #[error(
+        "the step of {step:.3e} s is beyond the stability limit of {limit:.3e} s, set by element \
+         {element} at {}; take a smaller step or a coarser mesh there",
+        place(at)
+    )]
+    Step { step: f64, limit: f64, element: u64, at: Vec3 },
+    #[error(
+        "{} at {} has a value that is not finite at t = {} s, step {step}",
+        node_text(node),
+        place(at),
+        rounded(*time)
+    )]
+    NotFinite { node: Option<u64>, at: Vec3, time: f64, step: u64 },
+    #[error(
+        "element {element} at {} is turned inside out at t = {} s, step {step} (volume ratio {ratio:.3})",
+        place(at),
+        rounded(*time)
+    )]
+    Inverted { element: u64, at: Vec3, ratio: f64, time: f64, step: u64 },
+    #[error("element {element} at {} at t = {} s, step {step}: {source}", place(at), rounded(*time))]
+    Material { element: u64, at: Vec3, source: ElastomerError, time: f64, step: u64 },
+}
+
+pub(crate) fn place(at: &Vec3) -> String {
+    format!("({:.6}, {:.6}, {:.6}) m", at[0], at[1], at[2])
+}
+
+/// Elements as the force loop reads them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Blocks {
+    Linear(Vec<tet4_blocks::Block>),
+    Quadratic(Vec<tet10_blocks::Block>),
+}
+
+/// A problem with everything precomputed.
+#[derive(Clone, Debug)]
+pub struct SolidModel {
+    pub problem: SolidProblem,
+    /// What messages call elements and nodes.
+    pub labels: Labels,
+    pub blocks: Blocks,
+    /// Lumped mass of each node, kg.
+    pub mass: Vec<f64>,
+    /// Reciprocal of the mass by component; zero where the displacement is prescribed.
+    pub per_mass: Vec<Node>,
+}
+
+/// The undeformed corners of an element.
+pub fn corners<const N: usize>(nodes: &[Vec3], element: &[u32; N]) -> [Vec3; N] {
+    element.map(|node| nodes[node as usize])
+}
+
+/// The mean of an element's undeformed corners, m.
+pub fn centre(problem: &SolidProblem, element: usize) -> Vec3 {
+    let nodes = problem.elements.corners(element);
+    [0, 1, 2].map(|i: usize| nodes.iter().map(|n| 0.25 * problem.nodes[*n as usize][i]).sum())
+}
+
+impl SolidModel {
+    /// # Errors
+    /// An element of no volume, a node without mass, a node or axis out of range, a component
+    /// prescribed twice, a material constant out of range.
+    pub fn new(problem: SolidProblem) -> Result<SolidModel, SolidError> {
+        SolidModel::labelled(problem, Labels::default())
+    }
+
+    /// As [`SolidModel::new`], with names for elements and nodes.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn labelled(problem: SolidProblem, labels: Labels) -> Result<SolidModel, SolidError> {
+        if !(problem.density > 0.0 && problem.density.is_finite()) {
+            return Err(SolidError::Density(problem.density));
+        }
+        if !(problem.damping >= 0.0 && problem.damping.is_finite()) {
+            return Err(SolidError::Damping(problem.damping));
+        }
+        let nodes = &problem.nodes;
+        let count = nodes.len();
+        if let Some(&node) = problem.elements.all_nodes().iter().find(|n| **n as usize >= count) {
+            return Err(SolidError::NoSuchNode { node, count });
+        }
+        let mut mass = vec![0.0; count];
+        let at = |index: usize| {
+            let (element, at) = (labels.element(index), centre(&problem, index));
+            move |source| SolidError::Element { element, at, source }
+        };
+        let blocks = match &problem.elements {
+            Elements::Linear(list) => {
+                let mut built = Vec::with_capacity(list.len());
+                for (index, element) in list.iter().enumerate() {
+                    let tet = Tet4::new(&corners(nodes, element)).map_err(at(index))?;
+                    for node in element {
+                        mass[*node as usize] += tet.nodal_mass(problem.density);
+                    }
+                    built.push((tet, *element));
+                }
+                Blocks::Linear(tet4_blocks::blocks(built.into_iter()))
+            }
+            Elements::Quadratic(list) => {
+                let mut built = Vec::with_capacity(list.len());
+                for (index, element) in list.iter().enumerate() {
+                    let places = corners(nodes, element);
+                    let tet = Tet10::new(&places).map_err(at(index))?;
+                    let shares = tet10::lumped_mass(&places, problem.density);
+                    for (node, share) in element.iter().zip(shares) {
+                        mass[*node as usize] += share;
+                    }
+                    built.push((tet, *element));
+                }
+                Blocks::Quadratic(tet10_blocks::blocks(built.into_iter()))
+            }
+        };
+        if let Some(node) = mass.iter().position(|m| *m == 0.0) {
+            return Err(SolidError::NoMass { node: labels.node(node) });
+        }
+        let mut per_mass: Vec<Node> =
+            mass.iter().map(|m| [1.0 / m, 1.0 / m, 1.0 / m, 0.0]).collect();
+        for Prescribed { node, axis, .. } in &problem.prescribed {
+            let (node, axis) = (*node, *axis);
+            let entry =
+                per_mass.get_mut(node as usize).ok_or(SolidError::NoSuchNode { node, count })?;
+            if axis > 2 {
+                return Err(SolidError::NoSuchAxis { node, axis });
+            }
+            if entry[axis] == 0.0 {
+                return Err(SolidError::PrescribedTwice { node, axis });
+            }
+            entry[axis] = 0.0;
+        }
+        for (node, _) in problem.loads.iter().flat_map(|load| &load.forces) {
+            if *node as usize >= count {
+                return Err(SolidError::NoSuchNode { node: *node, count });
+            }
+        }
+        Ok(SolidModel { problem, labels, blocks, mass, per_mass })
+    }
+
+    /// A value at a node that is not finite.
+    pub fn not_finite(&self, node: usize, time: f64, step: u64) -> SolidError {
+        let at = self.problem.nodes[node];
+        SolidError::NotFinite { node: self.labels.node(node), at, time, step }
+    }
+
+    /// An element turned inside out, with its volume ratio.
+    pub fn inverted(&self, element: usize, ratio: f64, time: f64, step: u64) -> SolidError {
+        let at = centre(&self.problem, element);
+        SolidError::Inverted { element: self.labels.element(element), at, ratio, time, step }
+    }
+
+    /// Adds the forces of all elements on the nodes, N.
+    pub fn add_internal_forces(&self, displacement: &[Node], forces: &mut [Node]) {
+        let material = self.problem.material;
+        match &self.blocks {
+            Blocks::Linear(blocks) => {
+                tet4_blocks::add_forces(blocks, material, displacement, forces);
+            }
+            Blocks::Quadratic(blocks) => {
+                tet10_blocks::add_forces(blocks, material, displacement, forces);
+            }
+        }
+    }
+
+    /// Adds loads and gravity at time `t`, N, gravity by the lumped masses: all nodes of a free
+    /// body then fall alike.
+    pub fn add_external_forces(
+        &self,
+        steps: SolidSteps,
+        t: f64,
+        forces: &mut [Node],
+        ran: &mut Counts,
+    ) {
+        self.add_loads(steps, t, forces, ran);
+        if steps.gravity {
+            self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
+        }
+    }
+
+    /// Adds loads and gravity at time `t`, N, gravity as ∫Nρg dV: what equilibrium needs. For
+    /// four-node elements this is the same as by lumped masses. For ten-node elements lumped
+    /// masses are positive everywhere, as explicit steps need them, but as a load they would cost an
+    /// order of convergence; the consistent load pulls corners upwards.
+    pub fn add_static_forces(&self, t: f64, forces: &mut [Node], ran: &mut Counts) {
+        let steps = self.acting();
+        self.add_loads(steps, t, forces, ran);
+        if steps.gravity {
+            self.add_weight(forces, ran);
+        }
+    }
+
+    /// Of [`SolidModel::add_static_forces`] what gravity does, N.
+    pub fn add_weight(&self, forces: &mut [Node], ran: &mut Counts) {
+        match &self.problem.elements {
+            Elements::Linear(_) => {
+                self.add_gravity(forces, self.mass.iter().copied().enumerate(), ran);
+            }
+            Elements::Quadratic(list) => {
+                for element in list {
+                    let shares = tet10::consistent_mass(
+                        &corners(&self.problem.nodes, element),
+                        self.problem.density,
+                    );
+                    let sums = shares.map(|row| row.iter().sum());
+                    self.add_gravity(forces, element.iter().map(|n| *n as usize).zip(sums), ran);
+                }
+            }
+        }
+    }
+
+    /// What its plan lets act on it.
+    pub fn acting(&self) -> SolidSteps {
+        SolidSteps::new(&self.problem, &Method::Explicit)
+    }
+
+    fn add_loads(&self, steps: SolidSteps, t: f64, forces: &mut [Node], ran: &mut Counts) {
+        if !steps.loads {
+            return;
+        }
+        ran.add(Stage::Loads, self.problem.loads.len() as u64);
+        for load in &self.problem.loads {
+            let factor = load.profile.value(t);
+            for (node, force) in &load.forces {
+                let sum = &mut forces[*node as usize];
+                for i in 0..3 {
+                    sum[i] += factor * force[i];
+                }
+            }
+        }
+    }
+
+    /// Weight of masses at nodes.
+    fn add_gravity(
+        &self,
+        forces: &mut [Node],
+        masses: impl Iterator<Item = (usize, f64)>,
+        ran: &mut Counts,
+    ) {
+        ran.add(Stage::Gravity, 1);
+        let gravity = self.problem.gravity;
+        for (node, mass) in masses {
+            for i in 0..3 {
+                forces[node][i] += mass * gravity[i];
+            }
+        }
+    }
+
+    /// The same element by element with the scalar law, as the oracle of the blocks.
+    pub fn add_internal_forces_plain(&self, displacement: &[Node], forces: &mut [Node]) {
+        let material = self.problem.material;
+        let law = |strain: &_| material.second_piola_kirchhoff(strain);
+        let vector = |node: u32| {
+            let u = displacement[node as usize];
+            [u[0], u[1], u[2]]
+        };
+        let nodes = &self.problem.nodes;
+        let mut add = |node: u32, force: Vec3| {
+            for i in 0..3 {
+                forces[node as usize][i] += force[i];
+            }
+        };
+        let sound = "elements were checked when the model was made";
+        match &self.problem.elements {
+            Elements::Linear(list) => {
+                for element in list {
+                    let tet = Tet4::new(&corners(nodes, element)).expect(sound);
+                    let of = tet
+                        .nodal_forces(&crate::elements::tet4::relative(&element.map(vector)), law);
+                    for n in 0..3 {
+                        add(element[n], of[n]);
+                    }
+                    let last = [0, 1, 2].map(|i: usize| -(of[0][i] + of[1][i] + of[2][i]));
+                    add(element[3], last);
+                }
+            }
+            Elements::Quadratic(list) => {
+                for element in list {
+                    let tet = Tet10::new(&corners(nodes, element)).expect(sound);
+                    let of = tet.nodal_forces(&element.map(vector), law);
+                    for n in 0..10 {
+                        add(element[n], of[n]);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,416 @@
+//! A linear housing reduced to some shapes: its natural ones up to a frequency, and its static answers to what acts on
+//! it besides.
+//!
+//! With natural shapes φ_k (φᵀMφ = 1) and forces f_j, each a pattern of pressure on the bore, the weight or a load, the
+//! basis is φ and ψ_j = K⁻¹f_j − Σ φ_k φ_kᵀf_j/ω_k², what the natural shapes leave of the static answer (residual
+//! attachment shapes, MacNeal 1971, Rubin 1975). Rayleigh and Ritz over both: natural shapes stay as they are, since ψ is
+//! orthogonal to them under M and K, and the ψ combine among themselves into shapes of higher frequencies. What comes
+//! out is diagonal, free of coupled masses, and statically exact for every f_j. Interface shapes with fixed-interface modes
+//! (Craig and Bampton) span no more, and would need an interface of few coordinates first.
+//!
+//! Patterns are loads that a race puts on its bore in all directions ([`crate::solids::load_patterns::pressed`]), and what natural shapes push it with
+//! that ring against it. So many are kept that under none of them more than a given part of the compliance of bore and contact is
+//! left out. The masses are the lumped ones, as of explicit steps.
+
+use crate::assembly::mount::Mount;
+use crate::assembly::plan::counts::Counts;
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::kinematics::vec3::{Vec3, add_scaled, dot, scale};
+use crate::members::housing_fit::Seat;
+use crate::members::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
+use crate::numeric::dense::DenseSymmetric;
+use crate::numeric::profile::Profile;
+use crate::numeric::sparse::FactorError;
+use crate::solids::bore_equilibrium::BoreState;
+use crate::solids::condensation::{CondensedBore, beyond_normals, rim};
+use crate::solids::load_patterns::{LoadPatterns, NOTHING_NEW, patterns};
+use crate::solids::model::SolidModel;
+use crate::solids::modes::{Mode, ModeError, ModeOptions, Wanted};
+use crate::solids::tangent::MassMatrix;
+use nalgebra::{DMatrix, SymmetricEigen, Vector3};
+use std::f64::consts::TAU;
+use thiserror::Error;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReduceOptions {
+    /// Natural shapes up to this frequency are kept, Hz.
+    pub modes_to: f64,
+    /// Part of the compliance under given loads that may be left out.
+    pub left_out: f64,
+}
+
+/// Part of the compliance that is left out where nothing else is asked for.
+pub const LEFT_OUT: f64 = 1e-4;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ReduceError {
+    #[error(transparent)]
+    Modes(#[from] ModeError),
+    #[error(transparent)]
+    Bore(#[from] FactorError),
+    #[error("natural shapes up to {frequency} Hz are asked for; that must be positive and finite")]
+    Frequency { frequency: f64 },
+    #[error(
+        "the housing has more than {most} natural shapes below {frequency:.4e} Hz: a reduced body has some dozens; \
+         ask for a lower frequency (housing.modes_to)"
+    )]
+    TooMany { most: usize, frequency: f64 },
+}
+
+/// What was kept and what is cut off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutOff {
+    /// Natural shapes, patterns of the bore, and answers to weight and loads that are kept.
+    pub natural: usize,
+    pub patterns: usize,
+    pub own: usize,
+    /// Asked for, the lowest natural frequency, and the lowest one left out, Hz.
+    pub modes_to: f64,
+    pub lowest: f64,
+    pub first_left_out: f64,
+    /// Of the stiffest shape, Hz.
+    pub highest: f64,
+    /// Largest part of the compliance of housing and contact under the given loads that no shape has. To first order the
+    /// race gives way by as much less; pressures that settle anew make it some times that (ten, measured, at most).
+    pub static_left_out: f64,
+    /// Largest part of it that only patterns have: what follows without natural shapes.
+    pub by_patterns: f64,
+    /// Nodes of the bore that can touch.
+    pub nodes: usize,
+}
+
+impl CutOff {
+    /// Part of the displacement that goes wrong at a frequency (Hz) because natural shapes beyond the first one left
+    /// out follow by patterns: at most their part of the compliance, grown as a swing of that frequency grows.
+    pub fn dynamic_error(&self, frequency: f64) -> f64 {
+        let square = (frequency / self.first_left_out).powi(2);
+        if square < 1.0 {
+            (self.by_patterns * square / (1.0 - square)).min(1.0)
+        } else {
+            self.by_patterns.min(1.0)
+        }
+    }
+}
+
+/// A housing in shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduction {
+    pub solid: ReducedSolid,
+    /// Displacements of all nodes for a unit of each shape.
+    pub shapes: Vec<Vec<Vec3>>,
+    pub cut_off: CutOff,
+}
+
+impl Reduction {
+    /// Displacements of all nodes where the shapes have gone so far (m), m.
+    pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
+        let nodes = self.shapes.first().map_or(0, Vec::len);
+        let mut sum = vec![[0.0; 3]; nodes];
+        for (shape, gone) in self.shapes.iter().zip(gone) {
+            for (sum, here) in sum.iter_mut().zip(shape) {
+                *sum = add_scaled(*sum, *gone, *here);
+            }
+        }
+        sum
+    }
+
+    /// Outward displacement of each node of the bore under outward unit forces on each, as the shapes have it, m/N.
+    pub fn compliance(&self) -> DenseSymmetric {
+        let surface = &self.solid.surfaces[0];
+        let count = surface.nodes.len();
+        let mut values = vec![0.0; count * count];
+        for (shape, w) in surface.shapes.chunks_exact(count).zip(&self.solid.frequencies) {
+            for (column, to) in shape.iter().zip(values.chunks_exact_mut(count)) {
+                let factor = column / (w * w);
+                to.iter_mut().zip(shape).for_each(|(to, row)| *to += factor * row);
+            }
+        }
+        DenseSymmetric::new(count, values).0
+    }
+
+    /// Outward displacement of each node of the bore under weight and loads at t = 0, m.
+    pub fn own(&self) -> Vec<f64> {
+        let mut own = vec![0.0; self.solid.surfaces[0].nodes.len()];
+        let gone = self.solid.rest(&own_forces(&self.solid, 0.0));
+        self.solid.surfaces[0].along_normals(&gone, &mut own);
+        own
+    }
+
+    /// Where the shapes rest under outward loads on the bore's nodes (N), weight and loads at t = 0, m.
+    pub fn rest(&self, loads: &[f64]) -> Vec<f64> {
+        let mut forces = own_forces(&self.solid, 0.0);
+        let surface = &self.solid.surfaces[0];
+        for (force, shape) in forces.iter_mut().zip(surface.shapes.chunks_exact(loads.len())) {
+            *force += shape.iter().zip(loads).map(|(shape, load)| shape * load).sum::<f64>();
+        }
+        self.solid.rest(&forces)
+    }
+
+    /// By how much each node of the bore is farther from the race than motions along normals make it where a search left both, m: of
+    /// its own normal alone, as shapes move it.
+    pub fn beyond_normals(&self, bore: &CondensedBore, state: &BoreState) -> Vec<f64> {
+        let surface = &self.solid.surfaces[0];
+        let mut outward = vec![0.0; surface.nodes.len()];
+        surface.along_normals(&self.rest(&state.loads), &mut outward);
+        let moved = surface.nodes.iter().zip(outward).map(|(node, out)| scale(node.normal, out));
+        beyond_normals(bore, moved, &state.pose).collect()
+    }
+
+    /// The race of `mount` in the bore.
+    pub fn seat(
+        &self,
+        bore: &CondensedBore,
+        race: Mount,
+        solid: usize,
+        radius: Profile,
+        penalty: Penalty,
+    ) -> Seat {
+        let width = bore.reach.width;
+        Seat {
+            name: "its bore".into(),
+            label: None,
+            race,
+            solid,
+            surface: 0,
+            radius,
+            width,
+            rim: rim(bore.nodes.iter().map(|node| node.area), width),
+            penalty,
+            nominal: bore.reach.nominal.position.into(),
+            axis: (bore.reach.nominal.orientation * Vector3::x()).into(),
+        }
+    }
+}
+
+/// Forces of weight and loads on the shapes at time `t`, N.
+fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
+    let mut forces = solid.weight.clone();
+    for load in &solid.loads {
+        let factor = load.profile.value(t);
+        forces.iter_mut().zip(&load.forces).for_each(|(to, force)| *to += factor * force);
+    }
+    forces
+}
+
+/// The most natural shapes that are kept.
+const MOST: usize = 400;
+/// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
+const RESIDUAL: f64 = 1e-7;
+/// Of shapes that are combined once more.
+const ROUGH_RESIDUAL: f64 = 1e-4;
+
+/// Natural shapes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
+///
+/// # Errors
+/// More than some hundred shapes; what [`CondensedBore::modes`] finds wrong.
+pub fn natural_shapes(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    frequency: f64,
+) -> Result<(Vec<Mode>, f64), ReduceError> {
+    if !(frequency > 0.0 && frequency.is_finite()) {
+        return Err(ReduceError::Frequency { frequency });
+    }
+    let wanted = Wanted::UpTo { frequency, most: MOST };
+    natural(model, bore, wanted, RESIDUAL).map_err(|error| match error {
+        ModeError::MoreThan { most, frequency } => ReduceError::TooMany { most, frequency },
+        other => other.into(),
+    })
+}
+
+/// The lowest natural shapes (lumped masses), so many, and the frequency of the first one beyond, Hz; their frequencies to 1e-8.
+///
+/// # Errors
+/// What [`CondensedBore::modes`] finds wrong.
+pub fn lowest_shapes(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    count: usize,
+) -> Result<(Vec<Mode>, f64), ReduceError> {
+    let wanted = Wanted::Lowest((count + 1).min(bore.unknowns().count));
+    Ok(natural(model, bore, wanted, ROUGH_RESIDUAL)?)
+}
+
+/// All but the last one of what is wanted, and the frequency of that, Hz; infinite where there is nothing beyond.
+fn natural(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    wanted: Wanted,
+    tolerance: f64,
+) -> Result<(Vec<Mode>, f64), ModeError> {
+    let options = ModeOptions { wanted, mass: MassMatrix::Lumped, tolerance };
+    let mut modes = bore.modes(model, &options)?.modes;
+    let is_last = match wanted {
+        Wanted::Lowest(count) => count == modes.len() && count < bore.unknowns().count,
+        Wanted::UpTo { frequency, .. } => {
+            modes.last().is_some_and(|mode| mode.frequency > frequency)
+        }
+    };
+    let next = if is_last { modes.pop() } else { None };
+    Ok((modes, next.map_or(f64::INFINITY, |mode| mode.frequency)))
+}
+
+/// A force on the solid and what its natural shapes leave of the static answer.
+struct Answer {
+    forces: Vec<(u32, Vec3)>,
+    shape: Vec<Vec3>,
+}
+
+/// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`, with answers to `loads`, see
+/// [`crate::solids::load_patterns::pressed`].
+///
+/// # Errors
+/// See [`ReduceError`].
+pub fn reduce(
+    model: &SolidModel,
+    bore: &CondensedBore,
+    penalty: Penalty,
+    loads: &LoadPatterns,
+    options: &ReduceOptions,
+) -> Result<Reduction, ReduceError> {
+    let (modes, first_left_out) = natural_shapes(model, bore, options.modes_to)?;
+    let lowest = modes.first().map_or(first_left_out, |mode| mode.frequency);
+    let natural: Vec<(f64, Vec<Vec3>)> =
+        modes.into_iter().map(|mode| (TAU * mode.frequency, mode.shape)).collect();
+    let outward: Vec<Vec3> = bore
+        .nodes
+        .iter()
+        .map(|node| bore.to_world([0.0, node.normal[0], node.normal[1]]))
+        .collect();
+    let at_bore = |shape: &[Vec3]| -> Vec<f64> {
+        let nodes = bore.nodes.iter().zip(&outward);
+        nodes.map(|(node, out)| dot(shape[node.node as usize], *out)).collect()
+    };
+
+    let kept = patterns(bore, penalty, &natural, loads, options.left_out, at_bore)?;
+    let own = own_loads(model);
+    let all = own.iter().map(|(forces, _)| forces.clone());
+    let on_bore = kept.vectors.iter().map(|pattern| bore.nodal_forces(pattern).collect());
+    let loads: Vec<Vec<(u32, Vec3)>> = all.chain(on_bore).collect();
+    let responses = bore.responses_to(&loads);
+    let beyond_natural = |(forces, mut shape): (Vec<(u32, Vec3)>, Vec<Vec3>)| {
+        for (frequency, known) in &natural {
+            let share = work(&forces, known) / (frequency * frequency);
+            for (s, k) in shape.iter_mut().zip(known) {
+                *s = add_scaled(*s, -share, *k);
+            }
+        }
+        Answer { forces, shape }
+    };
+    let answers: Vec<Answer> = loads.into_iter().zip(responses).map(beyond_natural).collect();
+    let (count, first_pattern) = (natural.len(), own.len());
+    let mut all = natural;
+    all.extend(combine(&answers, &model.mass));
+    let (frequencies, shapes): (Vec<f64>, Vec<Vec<Vec3>>) = all.into_iter().unzip();
+
+    let nodes = bore.nodes.iter().zip(&outward).map(|(node, &normal)| SurfaceNode {
+        node: node.node,
+        place: model.problem.nodes[node.node as usize],
+        normal,
+        area: node.area,
+    });
+    let surface = Surface {
+        nodes: nodes.collect(),
+        shapes: shapes.iter().flat_map(|shape| at_bore(shape)).collect(),
+    };
+    let mut weight = vec![0.0; shapes.len()];
+    let mut of_loads = Vec::new();
+    for (forces, profile) in &own {
+        let forces: Vec<f64> = shapes.iter().map(|shape| work(forces, shape)).collect();
+        match profile {
+            None => weight = forces,
+            Some(profile) => of_loads.push(ModalLoad { forces, profile: profile.clone() }),
+        }
+    }
+    let cut_off = CutOff {
+        natural: count,
+        patterns: shapes.len() - count - first_pattern.min(shapes.len() - count),
+        own: first_pattern,
+        modes_to: options.modes_to,
+        lowest,
+        first_left_out,
+        highest: frequencies.iter().fold(0.0, |most: f64, w| most.max(w / TAU)),
+        static_left_out: kept.left_out,
+        by_patterns: kept.by_patterns,
+        nodes: bore.nodes.len(),
+    };
+    let solid = ReducedSolid {
+        name: "the housing".into(),
+        start: vec![0.0; frequencies.len()],
+        frequencies,
+        damping: model.problem.damping,
+        weight,
+        loads: of_loads,
+        surfaces: vec![surface],
+    };
+    Ok(Reduction { solid, shapes, cut_off })
+}
+
+/// What forces do along a displacement, J.
+fn work(forces: &[(u32, Vec3)], displacement: &[Vec3]) -> f64 {
+    forces.iter().map(|(node, force)| dot(*force, displacement[*node as usize])).sum()
+}
+
+/// Nodes and the forces on them, N.
+type NodalForces = Vec<(u32, Vec3)>;
+
+/// Weight (without a profile) and loads (at profile value 1) of a solid.
+fn own_loads(model: &SolidModel) -> Vec<(NodalForces, Option<Profile>)> {
+    let problem = &model.problem;
+    let mut own = Vec::new();
+    if problem.gravity != [0.0; 3] {
+        let mut weight = vec![[0.0; 4]; model.mass.len()];
+        model.add_weight(&mut weight, &mut Counts::default());
+        let forces = (0u32..).zip(weight).map(|(node, [x, y, z, _])| (node, [x, y, z]));
+        own.push((forces.collect(), None));
+    }
+    let loads = problem.loads.iter().map(|load| (load.forces.clone(), Some(load.profile.clone())));
+    own.extend(loads);
+    own
+}
+
+/// Frequencies (rad/s, ascending) and shapes of unit mass that the answers span.
+fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {
+    let size = answers.len();
+    if size == 0 {
+        return Vec::new();
+    }
+    let energy = DMatrix::from_fn(size, size, |i, j| {
+        let of = |i: usize, j: usize| work(&answers[i].forces, &answers[j].shape);
+        0.5 * (of(i, j) + of(j, i))
+    });
+    let mut inertia = DMatrix::zeros(size, size);
+    for (i, one) in answers.iter().enumerate() {
+        for (j, other) in answers[..=i].iter().enumerate() {
+            let pairs = one.shape.iter().zip(&other.shape).zip(mass);
+            inertia[(i, j)] = pairs.map(|((a, b), m)| m * dot(*a, *b)).sum::<f64>();
+            inertia[(j, i)] = inertia[(i, j)];
+        }
+    }
+    let unit: Vec<f64> = (0..size)
+        .map(|i| if energy[(i, i)] > 0.0 { 1.0 / energy[(i, i)].sqrt() } else { 0.0 })
+        .collect();
+    let scaled = DMatrix::from_fn(size, size, |i, j| unit[i] * energy[(i, j)] * unit[j]);
+    let first = SymmetricEigen::new(scaled);
+    let new: Vec<usize> = (0..size).filter(|k| first.eigenvalues[*k] > NOTHING_NEW).collect();
+    // Columns of unit energy.
+    let basis = DMatrix::from_fn(size, new.len(), |i, k| {
+        unit[i] * first.eigenvectors[(i, new[k])] / first.eigenvalues[new[k]].sqrt()
+    });
+    let projected = basis.transpose() * inertia * &basis;
+    let second = SymmetricEigen::new(0.5 * (&projected + projected.transpose()));
+    let mut order: Vec<usize> = (0..new.len()).collect();
+    order.sort_by(|a, b| second.eigenvalues[*b].total_cmp(&second.eigenvalues[*a]));
+    let shape = |k: usize| {
+        let per_root = 1.0 / second.eigenvalues[k].sqrt();
+        let shares = &basis * second.eigenvectors.column(k) * per_root;
+        let mut shape = vec![[0.0; 3]; mass.len()];
+        for (answer, share) in answers.iter().zip(shares.iter()) {
+            for (to, from) in shape.iter_mut().zip(&answer.shape) {
+                *to = add_scaled(*to, *share, *from);
+            }
+        }
+        (per_root, shape)
+    };
+    order.into_iter().map(shape).collect()
+}

@@ -1,0 +1,51 @@
+//! The rigid part of a body's motion, which damping may leave alone.
+
+use crate::kinematics::vec3::{Vec3, add, cross, sub};
+use crate::solids::model::{DampedMotion, SolidProblem};
+use crate::solids::tet4_blocks::Node;
+use nalgebra::{Matrix3, Vector3};
+
+/// A body's mean motion: that of a rigid body with the same momenta.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RigidMotion {
+    centre: Vec3,
+    translation: Vec3,
+    spin: Vec3,
+}
+
+impl RigidMotion {
+    pub fn velocity(&self, place: Vec3, displacement: Node) -> Vec3 {
+        let now = add(place, [displacement[0], displacement[1], displacement[2]]);
+        add(self.translation, cross(self.spin, sub(now, self.centre)))
+    }
+}
+
+/// The motion that damping leaves alone; none in an absolute frame.
+pub fn rigid_motion(
+    problem: &SolidProblem,
+    mass: &[f64],
+    displacement: &[Node],
+    rate: &[Node],
+) -> RigidMotion {
+    if problem.damped_motion == DampedMotion::Absolute {
+        return RigidMotion::default();
+    }
+    let vector = |v: &Node| Vector3::new(v[0], v[1], v[2]);
+    let place = |n: usize| Vector3::from(problem.nodes[n]) + vector(&displacement[n]);
+    let total: f64 = mass.iter().sum();
+    let mut centre = Vector3::zeros();
+    let mut translation = Vector3::zeros();
+    for (n, mass) in mass.iter().enumerate() {
+        centre += place(n) * (mass / total);
+        translation += vector(&rate[n]) * (mass / total);
+    }
+    let mut inertia = Matrix3::zeros();
+    let mut angular_momentum = Vector3::zeros();
+    for (n, &mass) in mass.iter().enumerate() {
+        let arm = place(n) - centre;
+        inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * mass;
+        angular_momentum += arm.cross(&vector(&rate[n])) * mass;
+    }
+    let spin = inertia.try_inverse().map_or(Vector3::zeros(), |inverse| inverse * angular_momentum);
+    RigidMotion { centre: centre.into(), translation: translation.into(), spin: spin.into() }
+}

@@ -1,0 +1,73 @@
+//! What goes wrong with a solid of rubber.
+
+use crate::ch2_housing::elastomer::ElastomerError;
+use crate::kinematics::vec3::Vec3;
+use crate::numeric::clock::rounded;
+use crate::numeric::sparse::FactorError;
+use crate::solids::model::{SolidError, place};
+use thiserror::Error;
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RubberError {
+    #[error(transparent)]
+    Problem(#[from] SolidError),
+    #[error(transparent)]
+    Material(#[from] ElastomerError),
+    #[error("the {what} is {value}; it must be positive and finite")]
+    Option { what: &'static str, value: f64 },
+    #[error("the pulsation is {0} rad/s; it must not be negative")]
+    Pulsation(f64),
+    #[error(
+        "{vectors} vectors leave a change of {change:.1e} in the complex stiffness where {tolerance:.1e} is \
+         allowed"
+    )]
+    NotSettled { vectors: usize, change: f64, tolerance: f64 },
+    #[error("elements of four nodes; rubber needs those of ten")]
+    FourNodes,
+    #[error("no memory for the factors of the stiffness, {:.2} GB", 1e-9 * bytes)]
+    NoMemory { bytes: f64 },
+    #[error("the body or a part of it is free to move; hold it")]
+    Free,
+    /// Steps were halved until nothing was left to halve.
+    #[error(
+        "no equilibrium was found after t = {} s: a step of {step:.3e} s ended where {failure}",
+        rounded(*time)
+    )]
+    NoEquilibrium { time: f64, step: f64, failure: StepFailure },
+    /// The state is that of the last step.
+    #[error("stopped at t = {} s", rounded(*time))]
+    Stopped { time: f64 },
+}
+
+/// Why a step could not be taken.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum StepFailure {
+    #[error(
+        "{iterations} iterations left {residual:.3e} N unbalanced beside forces of up to {scale:.3e} N"
+    )]
+    NotConverged { residual: f64, scale: f64, iterations: usize },
+    #[error("element {element} at {} is turned inside out (volume ratio {ratio:.3})", place(at))]
+    Inverted { element: usize, at: Vec3, ratio: f64 },
+    #[error("in element {element} at {} {source}", place(at))]
+    Material { element: usize, at: Vec3, source: ElastomerError },
+    #[error("the stiffness is no longer positive definite: equilibrium is lost or not stable")]
+    Unstable,
+    #[error("forces are not finite")]
+    NotFinite,
+    #[error("a step would change strains by {strain:.3} in the mean")]
+    Far { strain: f64 },
+    #[error(
+        "{:.2} % of the work of a step is lost, however short it is: the rubber jumps to another equilibrium", 100.0 * part
+    )]
+    Jump { part: f64 },
+    #[error("the estimated error stays above what is allowed")]
+    Inaccurate,
+}
+
+/// Of a factorisation at rest.
+pub fn at_rest(error: FactorError) -> RubberError {
+    match error {
+        FactorError::NotPositiveDefinite { .. } => RubberError::Free,
+        FactorError::NoMemory { bytes } => RubberError::NoMemory { bytes },
+    }
+}

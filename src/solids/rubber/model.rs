@@ -1,0 +1,262 @@
+//! A solid of rubber as plain data, and with everything precomputed.
+
+use crate::ch2_housing::elastomer::Elastomer;
+use crate::elements::tet10::{POINTS, Tet10, lumped_mass};
+use crate::elements::tet10_nodal;
+use crate::kinematics::vec3::Vec3;
+use crate::mesh::TetMesh;
+use crate::numeric::profile::Profile;
+use crate::numeric::sparse::{Ordering, SymmetricMatrix};
+use crate::solids::model::{Load, Prescribed, SolidError, corners};
+use crate::solids::rubber::error::RubberError;
+use crate::solids::tangent::{Unknowns, pattern_over};
+
+/// A solid of one rubber in ten-node elements, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RubberProblem {
+    /// Undeformed places, m.
+    pub nodes: Vec<Vec3>,
+    pub elements: Vec<[u32; 10]>,
+    pub material: Elastomer,
+    /// Held or moved displacement components.
+    pub prescribed: Vec<Prescribed>,
+    pub loads: Vec<Load>,
+}
+
+/// A problem with everything precomputed.
+#[derive(Clone, Debug)]
+pub struct RubberModel {
+    pub problem: RubberProblem,
+    pub tets: Vec<Tet10>,
+    /// Where volume is averaged: around each corner node.
+    pub patches: Vec<Patch>,
+    /// The patches at the corners of each element.
+    pub patches_of: Vec<[u32; 4]>,
+    pub unknowns: Unknowns,
+    /// kg, one for each node; none where its mass is left out.
+    pub mass: Vec<f64>,
+}
+
+/// When loads and prescribed displacements are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// s.
+    pub time: f64,
+    /// How much of the jumps at that time is done: 1 is all.
+    pub share: f64,
+}
+
+impl Moment {
+    /// With all that happens at that time.
+    pub fn at(time: f64) -> Moment {
+        Moment { time, share: 1.0 }
+    }
+
+    fn value(&self, profile: &Profile) -> f64 {
+        let after = profile.value(self.time);
+        if self.share == 1.0 {
+            return after;
+        }
+        let before = before(profile, self.time);
+        before + self.share * (after - before)
+    }
+}
+
+/// What a profile was just before a time; before t = 0 there was nothing.
+fn before(profile: &Profile, t: f64) -> f64 {
+    if t > 0.0 { profile.value(t.next_down()) } else { 0.0 }
+}
+
+/// The elements around a corner node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Patch {
+    /// Element and which of its corners it is.
+    pub elements: Vec<(u32, u8)>,
+    /// Their nodes, ascending.
+    pub nodes: Vec<u32>,
+    /// Undeformed, m³.
+    pub volume: f64,
+}
+
+impl RubberModel {
+    /// # Errors
+    /// Constants that are no rubber's, a folded element, a node or axis out of range, a component prescribed
+    /// twice.
+    pub fn new(problem: RubberProblem) -> Result<RubberModel, RubberError> {
+        problem.material.check()?;
+        let count = problem.nodes.len();
+        let mut tets = Vec::with_capacity(problem.elements.len());
+        for (index, element) in problem.elements.iter().enumerate() {
+            if let Some(&node) = element.iter().find(|node| **node as usize >= count) {
+                return Err(SolidError::NoSuchNode { node, count }.into());
+            }
+            let tet = Tet10::new(&corners(&problem.nodes, element)).map_err(|source| {
+                let (element, at) = (index as u64 + 1, centre(&problem, index));
+                SolidError::Element { element, at, source }
+            })?;
+            tets.push(tet);
+        }
+        RubberModel::of_elements(problem, tets, None)
+    }
+
+    /// From elements that have been made, and where volume is averaged if not around corner nodes.
+    ///
+    /// # Errors
+    /// A node or axis out of range, a component prescribed twice.
+    pub(crate) fn of_elements(
+        problem: RubberProblem,
+        tets: Vec<Tet10>,
+        averaged: Option<(Vec<Patch>, Vec<[u32; 4]>)>,
+    ) -> Result<RubberModel, RubberError> {
+        let count = problem.nodes.len();
+        let mut free = vec![[false; 3]; count];
+        for node in problem.elements.as_flattened() {
+            free[*node as usize] = [true; 3];
+        }
+        for &Prescribed { node, axis, .. } in &problem.prescribed {
+            let of = free.get_mut(node as usize).ok_or(SolidError::NoSuchNode { node, count })?;
+            let of = of.get_mut(axis).ok_or(SolidError::NoSuchAxis { node, axis })?;
+            if !*of {
+                return Err(SolidError::PrescribedTwice { node, axis }.into());
+            }
+            *of = false;
+        }
+        for (node, _) in problem.loads.iter().flat_map(|load| &load.forces) {
+            if *node as usize >= count {
+                return Err(SolidError::NoSuchNode { node: *node, count }.into());
+            }
+        }
+        let (patches, patches_of) = averaged.unwrap_or_else(|| patches(&problem, &tets));
+        let unknowns = Unknowns::over(&problem.nodes, lists(&patches), &free, Ordering::Cheapest);
+        Ok(RubberModel { problem, tets, patches, patches_of, unknowns, mass: Vec::new() })
+    }
+
+    /// The same with the mass of rubber of `density` kg/m³, lumped.
+    #[must_use]
+    pub fn with_inertia(mut self, density: f64) -> RubberModel {
+        self.mass = vec![0.0; self.problem.nodes.len()];
+        for element in &self.problem.elements {
+            let shares = lumped_mass(&corners(&self.problem.nodes, element), density);
+            for (node, share) in element.iter().zip(shares) {
+                self.mass[*node as usize] += share;
+            }
+        }
+        self
+    }
+
+    /// An empty stiffness over the unknowns.
+    pub fn pattern(&self) -> SymmetricMatrix {
+        pattern_over(self.problem.nodes.len(), lists(&self.patches), &self.unknowns)
+    }
+
+    /// Whether a load or a prescribed displacement jumps at time `t`.
+    pub fn jumps(&self, t: f64) -> bool {
+        self.profiles().any(|profile| {
+            let (before, after) = (before(profile, t), profile.value(t));
+            // What is continuous differs by rounding of its argument.
+            (after - before).abs() > 1e-9 * (after.abs() + before.abs())
+        })
+    }
+
+    fn profiles(&self) -> impl Iterator<Item = &Profile> {
+        let moved = self.problem.prescribed.iter().map(|prescribed| &prescribed.profile);
+        moved.chain(self.problem.loads.iter().map(|load| &load.profile))
+    }
+
+    /// Sets the prescribed components of a displacement to what they are at a moment.
+    pub fn prescribe(&self, at: Moment, displacement: &mut [Vec3]) {
+        for Prescribed { node, axis, profile } in &self.problem.prescribed {
+            displacement[*node as usize][*axis] = at.value(profile);
+        }
+    }
+
+    /// Adds the loads at a moment, N.
+    pub fn add_loads(&self, at: Moment, forces: &mut [Vec3]) {
+        for load in &self.problem.loads {
+            let factor = at.value(&load.profile);
+            for (node, force) in &load.forces {
+                for i in 0..3 {
+                    forces[*node as usize][i] += factor * force[i];
+                }
+            }
+        }
+    }
+
+    /// When a prescribed displacement or a load changes its slope, ascending.
+    pub fn corners(&self) -> Vec<f64> {
+        let mut corners: Vec<f64> = self.profiles().flat_map(|profile| profile.corners()).collect();
+        corners.sort_by(f64::total_cmp);
+        corners.dedup();
+        corners
+    }
+}
+
+/// Prescribed components from node sets of a mesh: what each set's components do, `None` being free. A
+/// component that several sets name is the first one's. Sets that a mesh lacks have no nodes.
+pub fn supports(mesh: &TetMesh, sets: &[(&str, [Option<Profile>; 3])]) -> Vec<Prescribed> {
+    let mut taken = vec![[false; 3]; mesh.nodes.len()];
+    let mut prescribed = Vec::new();
+    for (name, components) in sets {
+        for &node in mesh.node_sets.get(*name).into_iter().flatten() {
+            for (axis, profile) in components.iter().enumerate() {
+                let Some(profile) = profile else { continue };
+                if !taken[node as usize][axis] {
+                    taken[node as usize][axis] = true;
+                    prescribed.push(Prescribed { node, axis, profile: profile.clone() });
+                }
+            }
+        }
+    }
+    prescribed
+}
+
+/// A patch for each corner node, in the order of the nodes.
+fn patches(problem: &RubberProblem, tets: &[Tet10]) -> (Vec<Patch>, Vec<[u32; 4]>) {
+    let mut index = vec![u32::MAX; problem.nodes.len()];
+    for node in problem.elements.iter().flat_map(|element| &element[..4]) {
+        index[*node as usize] = 0;
+    }
+    let mut count = 0;
+    for of in index.iter_mut().filter(|of| **of == 0) {
+        *of = count;
+        count += 1;
+    }
+    let mut patches = vec![Patch::default(); count as usize];
+    let mut patches_of = Vec::with_capacity(tets.len());
+    for (element, (nodes, tet)) in (0u32..).zip(problem.elements.iter().zip(tets)) {
+        let volumes = tet10_nodal::at_corners(tet, &[1.0; POINTS]);
+        let of = [0, 1, 2, 3].map(|corner: usize| index[nodes[corner] as usize]);
+        for (corner, (patch, volume)) in (0u8..).zip(of.into_iter().zip(volumes)) {
+            let patch = &mut patches[patch as usize];
+            patch.elements.push((element, corner));
+            patch.volume += volume;
+        }
+        patches_of.push(of);
+    }
+    // The last patch that has taken a node: most nodes come several times.
+    let mut taken_by = vec![u32::MAX; problem.nodes.len()];
+    for (patch, of) in (0u32..).zip(&mut patches) {
+        for &node in
+            of.elements.iter().flat_map(|(element, _)| &problem.elements[*element as usize])
+        {
+            if taken_by[node as usize] != patch {
+                taken_by[node as usize] = patch;
+                of.nodes.push(node);
+            }
+        }
+        of.nodes.sort_unstable();
+    }
+    (patches, patches_of)
+}
+
+fn lists(patches: &[Patch]) -> impl Iterator<Item = &[u32]> + Clone {
+    patches.iter().map(|patch| patch.nodes.as_slice())
+}
+
+/// The mean of an element's undeformed corners, m.
+pub fn centre(problem: &RubberProblem, element: usize) -> Vec3 {
+    let nodes = &problem.elements[element][..4];
+    [0, 1, 2].map(|i: usize| {
+        nodes.iter().map(|n| problem.nodes.get(*n as usize).map_or(0.0, |x| 0.25 * x[i])).sum()
+    })
+}

@@ -1,0 +1,255 @@
+//! Newton's method for the equilibrium of a solid of rubber at the end of a step.
+
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::counts::Counts;
+use crate::elements::tet10::POINTS;
+use crate::kinematics::strain::Sym3;
+use crate::kinematics::vec3::Vec3;
+use crate::numeric::sparse::FactorError;
+use crate::solids::rubber::error::{RubberError, StepFailure, at_rest};
+use crate::solids::rubber::model::{Moment, RubberModel};
+use crate::solids::rubber::tangent::{StepLaw, Tangent, add_forces};
+use crate::solids::tangent::PRESCRIBED;
+
+/// What the forces left unbalanced.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Unbalanced {
+    /// Largest on an unknown, N.
+    pub largest: f64,
+    /// Largest force at work, N.
+    pub scale: f64,
+}
+
+/// A search for equilibrium: displacements, and what it works with.
+pub struct Search<'a> {
+    pub model: &'a RubberModel,
+    pub tangent: Tangent,
+    pub displacement: Vec<Vec3>,
+    /// DEV S of the network at the present displacements, Pa.
+    pub deviatoric: Vec<Sym3>,
+    /// Mean stress at the corner nodes, Pa.
+    pub means: Vec<f64>,
+    /// Forces of the elements on the nodes, and loads, N.
+    pub internal: Vec<Vec3>,
+    pub loads: Vec<Vec3>,
+    /// Displacements of nodes that bodies carry, m.
+    pub driven: Vec<(u32, Vec3)>,
+    /// Where the nodes would be without acceleration at the end of the step, m; with inertia only.
+    pub newmark_predictor: Vec<Vec3>,
+    right: Vec<f64>,
+    moves: Vec<Vec3>,
+    pub iterations: usize,
+    /// How often each stage ran.
+    pub ran: Counts,
+}
+
+/// When a search has converged, and when it gives up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Convergence {
+    /// Largest unbalanced force over the largest force at work.
+    pub tolerance: f64,
+    /// As much where it falls no further: rounding.
+    pub rounding: f64,
+    pub most_iterations: usize,
+}
+
+impl Default for Convergence {
+    fn default() -> Self {
+        // Forces of a step are good to 1e-3; what rounding leaves at B = 1e5 C_R is some 1e-9.
+        Convergence { tolerance: 1e-9, rounding: 1e-7, most_iterations: 20 }
+    }
+}
+
+impl<'a> Search<'a> {
+    /// At rest.
+    pub fn new(model: &'a RubberModel) -> Search<'a> {
+        let count = model.problem.nodes.len();
+        Search {
+            tangent: Tangent::new(model),
+            displacement: vec![[0.0; 3]; count],
+            deviatoric: vec![[0.0; 6]; POINTS * model.tets.len()],
+            means: vec![0.0; model.patches.len()],
+            internal: vec![[0.0; 3]; count],
+            loads: vec![[0.0; 3]; count],
+            driven: Vec::new(),
+            newmark_predictor: vec![[0.0; 3]; model.mass.len()],
+            right: vec![0.0; model.unknowns.count],
+            moves: vec![[0.0; 3]; count],
+            iterations: 0,
+            ran: Counts::default(),
+            model,
+        }
+    }
+
+    /// Adds the solution to the unknowns.
+    fn advance(&mut self) {
+        for (u, of) in self.displacement.iter_mut().zip(&self.model.unknowns.of) {
+            for i in 0..3 {
+                if of[i] != PRESCRIBED {
+                    u[i] += self.right[of[i]];
+                }
+            }
+        }
+    }
+
+    /// Moves the prescribed components to where they are at a moment, and the others along as the
+    /// tangent in the present state has it.
+    ///
+    /// # Errors
+    /// As [`Search::converge`].
+    pub fn predict(&mut self, at: Moment, law: &StepLaw) -> Result<(), Stop> {
+        let unbalanced = self.balance(at, law)?;
+        let before = std::mem::take(&mut self.displacement);
+        self.moves.copy_from_slice(&before);
+        prescribe(self.model, at, &self.driven, &mut self.moves);
+        for (moved, before) in self.moves.iter_mut().zip(&before) {
+            *moved = std::array::from_fn(|i| moved[i] - before[i]);
+        }
+        let outcome =
+            self.tangent.refresh(self.model, law, &before, Some((&self.moves, &mut self.right)));
+        self.displacement = before;
+        self.check_factor(outcome?, unbalanced.scale == 0.0)?;
+        prescribe(self.model, at, &self.driven, &mut self.displacement);
+        self.tangent.solve(&mut self.right);
+        self.advance();
+        self.iterations += 1;
+        Ok(())
+    }
+
+    /// Forces in the present state, and the right-hand side.
+    fn balance(&mut self, at: Moment, law: &StepLaw) -> Result<Unbalanced, StepFailure> {
+        self.internal.fill([0.0; 3]);
+        self.loads.fill([0.0; 3]);
+        add_forces(
+            self.model,
+            law,
+            &self.displacement,
+            &mut self.internal,
+            &mut self.deviatoric,
+            &mut self.means,
+        )?;
+        self.model.add_loads(at, &mut self.loads);
+        self.ran.add(Stage::Elements, self.model.tets.len() as u64);
+        self.ran.add(Stage::Loads, self.model.problem.loads.len() as u64);
+        if law.inertia > 0.0 {
+            // Their inertia is a load on the nodes.
+            let nodes = self.displacement.iter().zip(&self.newmark_predictor);
+            for ((load, mass), (u, free)) in self.loads.iter_mut().zip(&self.model.mass).zip(nodes)
+            {
+                for i in 0..3 {
+                    load[i] -= law.inertia * mass * (u[i] - free[i]);
+                }
+            }
+        }
+        let mut found = Unbalanced::default();
+        let mut finite = true;
+        for (n, of) in self.model.unknowns.of.iter().enumerate() {
+            for i in 0..3 {
+                let (inner, outer) = (self.internal[n][i], self.loads[n][i]);
+                found.scale = found.scale.max(inner.abs()).max(outer.abs());
+                finite &= inner.is_finite() && outer.is_finite();
+                if of[i] != PRESCRIBED {
+                    self.right[of[i]] = inner + outer;
+                    found.largest = found.largest.max((inner + outer).abs());
+                }
+            }
+        }
+        if finite { Ok(found) } else { Err(StepFailure::NotFinite) }
+    }
+
+    fn check_factor(&self, outcome: Result<(), FactorError>, rest: bool) -> Result<(), Stop> {
+        match outcome {
+            Ok(()) => Ok(()),
+            Err(FactorError::NotPositiveDefinite { .. }) if !rest => {
+                Err(Stop::Step(StepFailure::Unstable))
+            }
+            Err(error) => Err(Stop::All(at_rest(error))),
+        }
+    }
+
+    /// Newton's iterations at a moment from the present displacements, with the factors of an earlier
+    /// state as long as they bring the residual down tenfold a step.
+    ///
+    /// # Errors
+    /// No convergence, an element turned inside out or beyond its material, an unstable state.
+    pub fn converge(
+        &mut self,
+        at: Moment,
+        law: &StepLaw,
+        options: &Convergence,
+    ) -> Result<(), Stop> {
+        prescribe(self.model, at, &self.driven, &mut self.displacement);
+        self.ran.add(Stage::Supports, self.model.problem.prescribed.len() as u64);
+        let mut last = f64::INFINITY;
+        let mut fresh = false;
+        for iteration in 0..=options.most_iterations {
+            let Unbalanced { largest, scale } = self.balance(at, law)?;
+            let stagnates = fresh && largest > 0.5 * last && largest <= options.rounding * scale;
+            if largest <= options.tolerance * scale || stagnates {
+                return Ok(());
+            }
+            let diverged = iteration > 3 && largest > 1e3 * last;
+            if iteration == options.most_iterations || diverged {
+                let (residual, iterations) = (largest, iteration);
+                return Err(StepFailure::NotConverged { residual, scale, iterations }.into());
+            }
+            fresh = !self.tangent.serves(law) || largest > 0.1 * last;
+            if fresh {
+                let displacement = std::mem::take(&mut self.displacement);
+                let outcome = self.tangent.refresh(self.model, law, &displacement, None);
+                self.displacement = displacement;
+                self.check_factor(outcome?, false)?;
+            }
+            last = largest;
+            self.tangent.solve(&mut self.right);
+            self.advance();
+            self.iterations += 1;
+        }
+        unreachable!("the loop returns at its last iteration")
+    }
+
+    /// Forces in a state that was in equilibrium at a moment, after a search for another one.
+    pub fn return_to(&mut self, at: Moment, law: &StepLaw) {
+        // It was found before, so that nothing can be wrong with it.
+        let _ = self.balance(at, law);
+    }
+
+    /// Sum of the forces of the supports on some nodes as of the last [`Search::converge`], N.
+    pub fn support_force(&self, nodes: &[u32]) -> Vec3 {
+        let mut sum = [0.0; 3];
+        for node in nodes {
+            let (inner, outer) = (self.internal[*node as usize], self.loads[*node as usize]);
+            for i in 0..3 {
+                sum[i] -= inner[i] + outer[i];
+            }
+        }
+        sum
+    }
+}
+
+/// Sets what is prescribed, and what bodies carry, to where it is at a moment.
+fn prescribe(model: &RubberModel, at: Moment, driven: &[(u32, Vec3)], displacement: &mut [Vec3]) {
+    model.prescribe(at, displacement);
+    for (node, place) in driven {
+        displacement[*node as usize] = *place;
+    }
+}
+
+/// Whether smaller steps might help.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stop {
+    Step(StepFailure),
+    All(RubberError),
+}
+
+impl From<RubberError> for Stop {
+    fn from(error: RubberError) -> Stop {
+        Stop::All(error)
+    }
+}
+
+impl From<StepFailure> for Stop {
+    fn from(failure: StepFailure) -> Stop {
+        Stop::Step(failure)
+    }
+}

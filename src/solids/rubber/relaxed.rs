@@ -1,0 +1,135 @@
+//! The relaxed equilibrium of a solid of rubber: long after every Maxwell element has forgotten how it came there.
+
+use crate::assembly::plan::Stage;
+use crate::assembly::plan::counts::Counts;
+use crate::kinematics::vec3::Vec3;
+use crate::numeric::profile::Profile;
+use crate::solids::rubber::checkpoint::RubberState;
+use crate::solids::rubber::error::{RubberError, StepFailure};
+use crate::solids::rubber::measures::network_energy;
+use crate::solids::rubber::model::RubberModel;
+use crate::solids::rubber::path_following::PathLimits;
+use crate::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
+use thiserror::Error;
+
+/// An equilibrium, and what it took.
+#[derive(Clone, Debug)]
+pub struct Relaxed {
+    pub state: RubberState,
+    /// Of the supports on all nodes, N.
+    pub reactions: Vec<Vec3>,
+    /// Of the network, J.
+    pub energy: f64,
+    /// Parts that supports and loads were brought up in.
+    pub steps: u64,
+    pub iterations: usize,
+    pub factorisations: usize,
+    pub ran: Counts,
+}
+
+/// No equilibrium at, or on the way to, what supports and loads ask for.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RelaxedError {
+    #[error(transparent)]
+    Rubber(#[from] RubberError),
+    #[error(
+        "no equilibrium was found beyond {:.3} % of the given loads and displacements: {failure}", 100.0 * part
+    )]
+    Lost { part: f64, failure: StepFailure, reached: Vec<Reached> },
+    #[error("interrupted at {:.3} % of the given loads and displacements", 100.0 * part)]
+    Stopped { part: f64, reached: Vec<Reached> },
+}
+
+/// An equilibrium on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reached {
+    /// Of what supports and loads ask for.
+    pub part: f64,
+    pub displacement: Vec<Vec3>,
+    /// Of the supports on all nodes, N.
+    pub reactions: Vec<Vec3>,
+}
+
+/// A part changes strains by 2 % where it is not a two-hundredth of the whole: at 5 % a bonded bushing whose way ends at 6.87 mm
+/// of 20 mm of rubber was found beyond. The jump of that bushing loses 0.7 % of the work of a tenth of a millimetre; what the
+/// trapezoidal rule misses of a smooth part falls with the square of its length, so that it passes when it is short enough.
+const WAY: PathLimits = PathLimits { strain: 0.02, short: 0.005, lost: 3e-3 };
+
+/// Supports and loads are brought up together to what they are at time `t` (s): at once, or in as many parts
+/// as it takes.
+///
+/// # Errors
+/// No equilibrium; a body that is free to move; no memory.
+pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
+    relaxed_while(model, t, |_| true)
+}
+
+/// As [`relaxed`], in parts that change strains by up to `strain` in place of 2 %: sooner where nothing folds.
+///
+/// # Errors
+/// As there.
+pub(crate) fn relaxed_in_parts(
+    model: &RubberModel,
+    t: f64,
+    strain: f64,
+) -> Result<Relaxed, RelaxedError> {
+    relaxed_on_a_way(model, t, PathLimits { strain, ..WAY }, |_| true)
+}
+
+/// As [`relaxed`], as long as what is shown the part that has been reached says to go on.
+///
+/// # Errors
+/// As there; [`RelaxedError::Stopped`].
+pub fn relaxed_while(
+    model: &RubberModel,
+    t: f64,
+    go_on: impl FnMut(f64) -> bool,
+) -> Result<Relaxed, RelaxedError> {
+    relaxed_on_a_way(model, t, WAY, go_on)
+}
+
+fn relaxed_on_a_way(
+    model: &RubberModel,
+    t: f64,
+    way: PathLimits,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<Relaxed, RelaxedError> {
+    let ramp = |to: f64| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 1.0 };
+    let mut model = model.clone();
+    model.problem.material.maxwell.clear();
+    for held in &mut model.problem.prescribed {
+        held.profile = ramp(held.profile.value(t));
+    }
+    for load in &mut model.problem.loads {
+        load.profile = ramp(load.profile.value(t));
+    }
+    let stepping = Stepping::Fixed(1.0);
+    let options =
+        StepOptions { stepping, smallest: 1e-7, way: Some(way), ..StepOptions::default() };
+    let mut solid = RubberSolid::new(&model, options)?;
+    let mut reached = Vec::new();
+    let ended = solid.advance_while(1.0, |solid| {
+        let (displacement, reactions) = (solid.displacement().to_vec(), solid.support_forces());
+        reached.push(Reached { part: solid.time(), displacement, reactions });
+        go_on(solid.time())
+    });
+    match ended {
+        Ok(()) => {}
+        Err(RubberError::NoEquilibrium { time, failure, .. }) => {
+            return Err(RelaxedError::Lost { part: time, failure, reached });
+        }
+        Err(RubberError::Stopped { time }) => {
+            return Err(RelaxedError::Stopped { part: time, reached });
+        }
+        Err(other) => return Err(other.into()),
+    }
+    let state = solid.state().clone();
+    let lost = |failure| RelaxedError::Lost { part: 1.0, failure, reached: Vec::new() };
+    let energy = network_energy(&model, &state.displacement).map_err(lost)?;
+    let (iterations, factorisations) = solid.work();
+    let mut ran = *solid.ran();
+    let steps = ran.take(Stage::Implicit);
+    ran.add(Stage::SolidStatics, steps);
+    let reactions = solid.support_forces();
+    Ok(Relaxed { state, reactions, energy, steps, iterations, factorisations, ran })
+}

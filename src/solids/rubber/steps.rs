@@ -1,0 +1,350 @@
+//! Steps of a solid of rubber in time, without inertia: each ends in equilibrium.
+//!
+//! What makes a step inexact is that DEV S does not go straight within it. From its second difference
+//! follows the error of the Maxwell stresses, and from that the length of the next step. Steps end at
+//! the corners of loads and prescribed displacements; behind a corner there is no second difference, so
+//! that a pair of steps is taken and judged together.
+
+use crate::assembly::plan::counts::Counts;
+use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors};
+use crate::elements::tet10::POINTS;
+use crate::kinematics::strain::Sym3;
+use crate::kinematics::vec3::Vec3;
+use crate::solids::rubber::checkpoint::{RubberCheckpoint, RubberState};
+use crate::solids::rubber::error::{RubberError, StepFailure};
+use crate::solids::rubber::model::{Moment, RubberModel};
+use crate::solids::rubber::newton::{Convergence, Search, Stop};
+use crate::solids::rubber::path_following::PathLimits;
+use crate::solids::rubber::tangent::StepLaw;
+
+/// How long steps are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stepping {
+    /// s; halved where no equilibrium is found otherwise.
+    Fixed(f64),
+    /// The estimated error of a step's Maxwell stresses stays below this part of the largest total
+    /// stress so far, in the mean square over the body.
+    Accuracy(f64),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepOptions {
+    pub stepping: Stepping,
+    /// Steps are cut down to this part of the way to the next corner before giving up.
+    pub smallest: f64,
+    /// Where a step may only end in an equilibrium that follows from the one before it.
+    pub way: Option<PathLimits>,
+    pub convergence: Convergence,
+}
+
+impl Default for StepOptions {
+    fn default() -> Self {
+        let convergence = Convergence::default();
+        let stepping = Stepping::Accuracy(1e-4);
+        StepOptions { stepping, smallest: 1e-9, way: None, convergence }
+    }
+}
+
+/// Steps done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepCounts {
+    pub accepted: u64,
+    /// Undone because no equilibrium was found or the error was too large.
+    pub undone: u64,
+}
+
+/// A solid of rubber on its way.
+pub struct RubberSolid<'a> {
+    pub(crate) search: Search<'a>,
+    pub(crate) options: StepOptions,
+    pub(crate) state: RubberState,
+    pub(crate) factors: StepFactors,
+    pub(crate) dashpots: DashpotFactors,
+    pub(crate) carried: Vec<Sym3>,
+    corners: Vec<f64>,
+    /// What the next step should be, s; zero if unknown.
+    next: f64,
+    /// Largest total deviatoric stress so far, mean square over the body, Pa.
+    pub(crate) scale: f64,
+    pub(crate) volume: f64,
+    pub counts: StepCounts,
+}
+
+impl<'a> RubberSolid<'a> {
+    /// At rest at t = 0.
+    ///
+    /// # Errors
+    /// Steps or an accuracy that are not positive.
+    pub fn new(
+        model: &'a RubberModel,
+        options: StepOptions,
+    ) -> Result<RubberSolid<'a>, RubberError> {
+        let (what, value) = match options.stepping {
+            Stepping::Fixed(step) => ("step", step),
+            Stepping::Accuracy(accuracy) => ("accuracy", accuracy),
+        };
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(RubberError::Option { what, value });
+        }
+        let state = RubberState::rest(model);
+        Ok(RubberSolid {
+            search: Search::new(model),
+            options,
+            state,
+            factors: StepFactors::default(),
+            dashpots: DashpotFactors::default(),
+            carried: vec![[0.0; 6]; POINTS * model.tets.len()],
+            corners: model.corners(),
+            next: 0.0,
+            scale: 0.0,
+            volume: model.tets.iter().map(|tet| tet.volume()).sum(),
+            counts: StepCounts::default(),
+        })
+    }
+
+    /// s.
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    pub fn model(&self) -> &'a RubberModel {
+        self.search.model
+    }
+
+    /// The state that stands.
+    pub fn state(&self) -> &RubberState {
+        &self.state
+    }
+
+    /// All that the steps to come follow from.
+    pub fn checkpoint(&self) -> RubberCheckpoint {
+        let (iterations, factorisations) = self.work();
+        RubberCheckpoint {
+            state: self.state.clone(),
+            next: self.next,
+            scale: self.scale,
+            counts: self.counts,
+            iterations,
+            factorisations,
+            factored: self.search.tangent.factored().cloned(),
+        }
+    }
+
+    /// Goes back or on to where a checkpoint was taken; steps from there have the same bits as those that
+    /// followed it.
+    ///
+    /// # Errors
+    /// No memory for the factors; a state that is not one of this body.
+    ///
+    /// # Panics
+    /// If the checkpoint has other numbers of nodes or points.
+    pub fn restore(&mut self, kept: &RubberCheckpoint) -> Result<(), RubberError> {
+        self.state.clone_from(&kept.state);
+        (self.next, self.scale, self.counts) = (kept.next, kept.scale, kept.counts);
+        self.restore_forces();
+        let outcome = self.search.tangent.restore(self.search.model, kept.factored.as_ref());
+        self.search.iterations = kept.iterations;
+        self.search.tangent.factorisations = kept.factorisations;
+        outcome.map_err(|stop| match stop {
+            Stop::All(error) => error,
+            Stop::Step(failure) => {
+                RubberError::NoEquilibrium { time: self.state.time, step: 0.0, failure }
+            }
+        })
+    }
+
+    /// How often each stage ran.
+    pub fn ran(&self) -> &Counts {
+        &self.search.ran
+    }
+
+    /// Counts anew.
+    pub fn forget_ran(&mut self) {
+        self.search.ran = Counts::default();
+    }
+
+    /// Forces of the supports on all nodes, N.
+    pub fn support_forces(&self) -> Vec<Vec3> {
+        let all = self.search.internal.iter().zip(&self.search.loads);
+        all.map(|(inner, outer)| std::array::from_fn(|i| 0.0 - (inner[i] + outer[i]))).collect()
+    }
+
+    /// m, one for each node.
+    pub fn displacement(&self) -> &[Vec3] {
+        &self.state.displacement
+    }
+
+    /// Sum of the forces of the supports on some nodes, N.
+    pub fn support_force(&self, nodes: &[u32]) -> Vec3 {
+        self.search.support_force(nodes)
+    }
+
+    /// Iterations and factorisations so far.
+    pub fn work(&self) -> (usize, usize) {
+        (self.search.iterations, self.search.tangent.factorisations)
+    }
+
+    /// Goes on to the time `until` (s), and shows every state that stands; of the pair of steps
+    /// behind a corner the second. At a jump there are two: before it and after it.
+    ///
+    /// # Errors
+    /// [`RubberError::NoEquilibrium`] where no step however small ends in equilibrium. The state is then that
+    /// of the last step that did. An end that is not finite.
+    pub fn advance(
+        &mut self,
+        until: f64,
+        mut watch: impl FnMut(&RubberSolid),
+    ) -> Result<(), RubberError> {
+        self.advance_while(until, |solid| {
+            watch(solid);
+            true
+        })
+    }
+
+    /// As [`RubberSolid::advance`], as long as what is shown the states says to go on.
+    ///
+    /// # Errors
+    /// As there; [`RubberError::Stopped`].
+    pub fn advance_while(
+        &mut self,
+        until: f64,
+        mut watch: impl FnMut(&RubberSolid) -> bool,
+    ) -> Result<(), RubberError> {
+        if !until.is_finite() {
+            return Err(RubberError::Option { what: "end of the run", value: until });
+        }
+        if self.counts == StepCounts::default() {
+            self.sudden_change(&mut watch)?;
+        }
+        while self.state.time < until {
+            let corner = self.corners.iter().copied().find(|corner| *corner > self.state.time);
+            let end = corner.map_or(until, |corner| corner.min(until));
+            self.advance_smoothly(end, &mut watch)?;
+            if corner == Some(end) {
+                (self.state.last, self.next) = (0.0, 0.0);
+                self.sudden_change(&mut watch)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a load or a prescribed displacement jumps, the body follows with its instantaneous
+    /// stiffness, in no time: at once, or in parts where the search for the whole fails.
+    fn sudden_change(
+        &mut self,
+        watch: &mut impl FnMut(&RubberSolid) -> bool,
+    ) -> Result<(), RubberError> {
+        let time = self.state.time;
+        if !self.search.model.jumps(time) {
+            return Ok(());
+        }
+        let (mut done, mut part) = (0.0, 1.0);
+        let mut reached = self.state.displacement.clone();
+        while done < 1.0 {
+            let share = if done + part > 1.0 - 1e-9 { 1.0 } else { done + part };
+            match self.sudden_part(Moment { time, share }, &reached) {
+                Ok(()) => {
+                    done = share;
+                    part *= 2.0;
+                    reached.copy_from_slice(&self.search.displacement);
+                }
+                Err(Stop::All(error)) => return Err(error),
+                Err(Stop::Step(failure)) => {
+                    self.counts.undone += 1;
+                    self.search.tangent.forget();
+                    part *= 0.5;
+                    let gone = part >= self.options.smallest;
+                    if !gone {
+                        self.restore_forces();
+                        return Err(RubberError::NoEquilibrium { time, step: 0.0, failure });
+                    }
+                }
+            }
+        }
+        self.accept(0.0, time);
+        self.shown(watch)
+    }
+
+    /// Equilibrium when a part of a jump is done, from the one before. Nothing relaxes meanwhile, so that the
+    /// way does not matter.
+    fn sudden_part(&mut self, at: Moment, from: &[Vec3]) -> Result<(), Stop> {
+        self.carry(0.0)?;
+        let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
+        self.search.displacement.copy_from_slice(from);
+        self.search.predict(at, &law)?;
+        self.search.converge(at, &law, &self.options.convergence)
+    }
+
+    /// Goes on to a time before which nothing changes its slope.
+    fn advance_smoothly(
+        &mut self,
+        end: f64,
+        watch: &mut impl FnMut(&RubberSolid) -> bool,
+    ) -> Result<(), RubberError> {
+        let smallest = self.options.smallest * (end - self.state.time);
+        let mut longest = f64::INFINITY;
+        // What stopped a step, and where that step was to end.
+        let mut stopped: Option<(f64, StepFailure)> = None;
+        while self.state.time < end {
+            let rest = end - self.state.time;
+            let wanted = match self.options.stepping {
+                Stepping::Fixed(step) if self.next == 0.0 => step,
+                // A fiftieth: should it be too long, it will be halved.
+                Stepping::Accuracy(_) if self.next == 0.0 => rest / 50.0,
+                _ => self.next,
+            };
+            let wanted = wanted.min(longest);
+            // Two even steps rather than a long one and a sliver.
+            let step = if wanted > rest * (1.0 - 1e-9) {
+                rest
+            } else if 2.0 * wanted > rest && self.judges() {
+                0.5 * rest
+            } else {
+                wanted
+            };
+            let to = if step == rest { end } else { self.state.time + step };
+            match self.attempt(step, to) {
+                Ok(longer) => {
+                    stopped = stopped.filter(|(at, _)| self.state.time < *at);
+                    longest *= 1.2;
+                    self.next = match self.options.stepping {
+                        Stepping::Fixed(fixed) => fixed.min(2.0 * step),
+                        Stepping::Accuracy(_) => longer * step,
+                    };
+                    self.shown(watch)?;
+                }
+                Err(Stop::All(error)) => return Err(error),
+                Err(Stop::Step(failure)) => {
+                    self.counts.undone += 1;
+                    self.search.tangent.forget();
+                    self.next = 0.5 * step;
+                    if let (StepFailure::Far { strain }, Some(way)) = (&failure, self.options.way) {
+                        // Strains grow about as the way does.
+                        longest = step * (0.9 * way.strain / strain).max(0.25);
+                        self.next = longest;
+                    }
+                    // What the material cannot bear says more than iterations that find nothing just short of it.
+                    if !matches!(stopped, Some((_, StepFailure::Material { .. }))) {
+                        stopped = Some((to, failure.clone()));
+                    }
+                    let gone = self.next >= smallest;
+                    if !gone {
+                        self.restore_forces();
+                        let time = self.state.time;
+                        let failure = stopped.map_or(failure, |(_, failure)| failure);
+                        return Err(RubberError::NoEquilibrium { time, step, failure });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn shown(&self, watch: &mut impl FnMut(&RubberSolid) -> bool) -> Result<(), RubberError> {
+        if watch(self) { Ok(()) } else { Err(RubberError::Stopped { time: self.state.time }) }
+    }
+
+    pub(crate) fn judges(&self) -> bool {
+        matches!(self.options.stepping, Stepping::Accuracy(_))
+    }
+}

@@ -1,0 +1,67 @@
+//! Implicit steps and small vibrations of the four-node elements that explicit steps use.
+//!
+//! To the ten-node element a four-node one is an element whose mid-edge nodes have no shape function and whose
+//! quadrature points all have its one gradient. Volumes around corner nodes are then its volumes around nodes
+//! ([`crate::elements::tet4_nodal`]), and a patch of its own for each element makes it the source's element, which
+//! locks. Everything for ten-node elements holds for it; only its work is that of ten nodes.
+
+use crate::elements::tet4::Tet4;
+use crate::elements::tet10::{POINTS, Point, Tet10};
+use crate::solids::model::corners;
+use crate::solids::rubber::error::RubberError;
+use crate::solids::rubber::explicit::RubberBody;
+use crate::solids::rubber::model::{Patch, RubberModel, RubberProblem};
+use crate::solids::rubber::tet_forces::MeanStress;
+
+impl RubberBody {
+    /// The same body and elements for implicit steps: without inertia, mass and gravity.
+    ///
+    /// # Errors
+    /// As [`RubberBody::model`] and [`RubberModel::new`].
+    pub fn implicit(&self) -> Result<RubberModel, RubberError> {
+        // Checks elements and supports.
+        self.model()?;
+        let sound = "elements were checked when the model was made";
+        let tets: Vec<Tet10> = self
+            .elements
+            .iter()
+            .map(|element| widened(&Tet4::new(&corners(&self.nodes, element)).expect(sound)))
+            .collect();
+        let elements: Vec<[u32; 10]> = self
+            .elements
+            .iter()
+            .map(|[a, b, c, d]| [*a, *b, *c, *d, *a, *a, *a, *a, *a, *a])
+            .collect();
+        let problem = RubberProblem {
+            nodes: self.nodes.clone(),
+            elements,
+            material: self.material.clone(),
+            prescribed: self.prescribed.clone(),
+            loads: self.loads.clone(),
+        };
+        match self.mean_stress {
+            MeanStress::AroundNodes => RubberModel::of_elements(problem, tets, None),
+            MeanStress::OfElement => {
+                let own = |(element, nodes): (u32, &[u32; 10])| {
+                    let mut nodes = nodes[..4].to_vec();
+                    nodes.sort_unstable();
+                    let volume = tets[element as usize].points.iter().map(|p| p.volume).sum();
+                    Patch { elements: (0..4).map(|c| (element, c)).collect(), nodes, volume }
+                };
+                let patches = (0u32..).zip(&problem.elements).map(own).collect();
+                let patches_of = (0..problem.elements.len() as u32).map(|e| [e; 4]).collect();
+                RubberModel::of_elements(problem, tets, Some((patches, patches_of)))
+            }
+        }
+    }
+}
+
+/// As an element of ten nodes, six of which do nothing.
+fn widened(tet: &Tet4) -> Tet10 {
+    let [a, b, c] = tet.gradients;
+    let last = [0, 1, 2].map(|i: usize| -(a[i] + b[i] + c[i]));
+    let mut gradients = [[0.0; 3]; 10];
+    gradients[..4].copy_from_slice(&[a, b, c, last]);
+    let point = Point { gradients, volume: tet.volume / POINTS as f64 };
+    Tet10 { points: [point; POINTS] }
+}

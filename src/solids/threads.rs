@@ -1,0 +1,202 @@
+//! Several threads with the bits of one: within a solid, and one solid beside the other.
+//!
+//! Of a solid each part owns a range of nodes and computes every element that touches one of them, so that
+//! the forces on its nodes are summed in the order in which one thread sums them; elements between two
+//! ranges are computed twice. What is left of a step, contacts and the motion of nodes, one thread does.
+
+use crate::mesh::tet_mesh::Elements;
+use crate::solids::explicit::ExplicitSolid;
+use crate::solids::labels::Labels;
+use crate::solids::model::{SolidModel, SolidProblem};
+use crate::solids::tet4_blocks::Node;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Below this many elements a thread sharing out costs more than it brings.
+pub const ELEMENTS_A_THREAD: usize = 2500;
+
+/// Threads that work is shared out to.
+#[derive(Clone, Debug, Default)]
+pub struct WorkerPool {
+    /// None where one thread does it all.
+    pool: Option<Arc<ThreadPool>>,
+}
+
+impl WorkerPool {
+    /// So many threads; one where the system gives no more.
+    pub fn new(threads: usize) -> WorkerPool {
+        let pool = (threads > 1).then(|| ThreadPoolBuilder::new().num_threads(threads).build());
+        WorkerPool { pool: pool.and_then(Result::ok).map(Arc::new) }
+    }
+
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
+    }
+
+    /// Does the same to each of a list.
+    ///
+    /// # Errors
+    /// That of the first in the list that has one.
+    pub fn each<T: Send, E: Send>(
+        &self,
+        list: &mut [T],
+        go: impl Fn(&mut T) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
+        let Some(pool) = self.pool.as_ref().filter(|_| list.len() > 1) else {
+            return list.iter_mut().try_for_each(go);
+        };
+        let mut errors: Vec<Option<E>> = list.iter().map(|_| None).collect();
+        pool.scope(|scope| {
+            for (one, error) in list.iter_mut().zip(&mut errors) {
+                let go = &go;
+                scope.spawn(move |_| *error = go(one).err());
+            }
+        });
+        errors.into_iter().flatten().next().map_or(Ok(()), Err)
+    }
+}
+
+/// The force loop of a solid, shared out to threads.
+#[derive(Debug)]
+pub(crate) struct Partition {
+    crew: WorkerPool,
+    parts: Vec<Part>,
+}
+
+#[derive(Debug)]
+struct Part {
+    model: SolidModel,
+    /// Its own nodes in the whole body; the first ones in its own numbering.
+    owned: Range<usize>,
+    /// Foreign nodes behind its own ones, in the whole body, ascending.
+    foreign: Vec<usize>,
+    displacement: Vec<Node>,
+    force: Vec<Node>,
+}
+
+impl ExplicitSolid {
+    /// From now on evaluates its elements in so many parts, on the threads of a crew, with the same bits;
+    /// in fewer where there are few of them, and in one of rubber.
+    pub fn share(&mut self, crew: &WorkerPool, parts: usize) {
+        let parts = if self.rubber.is_some() { 1 } else { parts };
+        let ranges = ranges(&self.model.problem, parts);
+        self.team = (ranges.len() > 1).then(|| Partition {
+            crew: crew.clone(),
+            parts: ranges.into_iter().map(|owned| part(&self.model, owned)).collect(),
+        });
+    }
+
+    /// Elements computed a step, those between two parts twice.
+    pub fn elements_a_step(&self) -> usize {
+        let whole = || self.model.problem.elements.len();
+        self.team.as_ref().map_or_else(whole, |team| {
+            team.parts.iter().map(|part| part.model.problem.elements.len()).sum()
+        })
+    }
+}
+
+impl Partition {
+    /// Adds the forces of all elements to `forces` (N).
+    pub fn add_internal_forces(&mut self, displacement: &[Node], forces: &mut [Node]) {
+        let mut left = forces;
+        let mut work = Vec::with_capacity(self.parts.len());
+        for part in &mut self.parts {
+            let (own, others) = left.split_at_mut(part.owned.len());
+            work.push((part, own));
+            left = others;
+        }
+        let done: Result<(), ()> = self.crew.each(&mut work, |(part, own)| {
+            part.evaluate(displacement);
+            for (sum, force) in own.iter_mut().zip(&part.force) {
+                for i in 0..4 {
+                    sum[i] += force[i];
+                }
+            }
+            Ok(())
+        });
+        debug_assert!(done.is_ok());
+    }
+}
+
+impl Part {
+    /// The forces on its nodes; those on foreign ones lack what is not its own.
+    fn evaluate(&mut self, displacement: &[Node]) {
+        let own = self.owned.len();
+        self.displacement[..own].copy_from_slice(&displacement[self.owned.clone()]);
+        for (here, node) in self.displacement[own..].iter_mut().zip(&self.foreign) {
+            *here = displacement[*node];
+        }
+        self.force.fill([0.0; 4]);
+        self.model.add_internal_forces(&self.displacement, &mut self.force);
+    }
+}
+
+/// Ranges of nodes with about the same number of element corners each.
+fn ranges(problem: &SolidProblem, parts: usize) -> Vec<Range<usize>> {
+    let count = problem.nodes.len();
+    let parts = parts.min(problem.elements.len().div_ceil(ELEMENTS_A_THREAD)).max(1);
+    let mut corners = vec![0usize; count];
+    for node in problem.elements.all_nodes() {
+        corners[*node as usize] += 1;
+    }
+    let total: usize = corners.iter().sum();
+    let mut ranges = Vec::new();
+    let (mut start, mut sum) = (0, 0);
+    for (node, share) in corners.iter().enumerate() {
+        sum += share;
+        if sum * parts >= total * (ranges.len() + 1) || node + 1 == count {
+            ranges.push(start..node + 1);
+            start = node + 1;
+        }
+    }
+    ranges
+}
+
+/// The part of a solid that owns a range of nodes.
+fn part(whole: &SolidModel, owned: Range<usize>) -> Part {
+    let problem = &whole.problem;
+    let mine = |node: u32| owned.contains(&(node as usize));
+    let touching: Vec<u32> = (0..problem.elements.len() as u32)
+        .filter(|element| problem.elements.nodes(*element as usize).iter().any(|n| mine(*n)))
+        .collect();
+    let mut foreign: Vec<usize> = touching
+        .iter()
+        .flat_map(|element| problem.elements.nodes(*element as usize))
+        .filter(|node| !mine(**node))
+        .map(|node| *node as usize)
+        .collect();
+    foreign.sort_unstable();
+    foreign.dedup();
+    let local = |node: u32| -> u32 {
+        let node = node as usize;
+        if owned.contains(&node) {
+            (node - owned.start) as u32
+        } else {
+            (owned.len() + foreign.binary_search(&node).expect("listed above")) as u32
+        }
+    };
+    let elements = match &problem.elements {
+        Elements::Linear(list) => Elements::Linear(
+            touching.iter().map(|element| list[*element as usize].map(local)).collect(),
+        ),
+        Elements::Quadratic(list) => Elements::Quadratic(
+            touching.iter().map(|element| list[*element as usize].map(local)).collect(),
+        ),
+    };
+    let all: Vec<usize> = owned.clone().chain(foreign.iter().copied()).collect();
+    let problem = SolidProblem {
+        nodes: all.iter().map(|node| problem.nodes[*node]).collect(),
+        elements,
+        prescribed: Vec::new(),
+        loads: Vec::new(),
+        ..problem.clone()
+    };
+    let labels = Labels {
+        elements: touching.iter().map(|e| whole.labels.element(*e as usize)).collect(),
+        nodes: all.iter().map(|node| whole.labels.node(*node)).collect(),
+    };
+    let model = SolidModel::labelled(problem, labels).expect("the whole was checked");
+    let still = vec![[0.0; 4]; all.len()];
+    Part { model, owned, foreign, displacement: still.clone(), force: still }
+}
