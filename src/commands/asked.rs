@@ -16,8 +16,7 @@ pub struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// The folder for results, claimed before anything is computed; `None` where they are only to be said. That of
-    /// modes is apart from the one of statics and of runs, so that each holds one kind of results.
+    /// The folder for results, claimed before anything is computed; `None` where they are only to be said.
     ///
     /// # Errors
     /// Those of [`claimed`].
@@ -25,11 +24,8 @@ impl Asked<'_> {
         if self.dry {
             return Ok(None);
         }
-        let mut folder = results_folder(self.path, self.out);
-        if self.out.is_none() && writes == Writes::Modes {
-            let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            folder = folder.with_file_name(format!("{name}-modes"));
-        }
+        let kind = if writes == Writes::Modes { "modes" } else { "statics" };
+        let folder = results_folder(self.path, kind, self.out);
         claimed(&folder, writes).map(Some)
     }
 }

@@ -187,10 +187,12 @@ pub fn record(
     }
 }
 
-/// `results/<name of the scene>` unless a folder was given.
-pub fn results_folder(scene: &Path, given: &Option<PathBuf>) -> PathBuf {
+/// `results/NAME-KIND` unless a folder was given: one folder for each kind of result of a scene.
+pub fn results_folder(scene: &Path, kind: &str, given: &Option<PathBuf>) -> PathBuf {
     given.clone().unwrap_or_else(|| {
-        let name = scene.file_stem().unwrap_or(scene.as_os_str());
+        let mut name = scene.file_stem().unwrap_or(scene.as_os_str()).to_os_string();
+        name.push("-");
+        name.push(kind);
         Path::new("results").join(name)
     })
 }

@@ -12,7 +12,7 @@ pub struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     changes: Changes,
-    /// Results folder [default: results/<name of the scene>]
+    /// Results folder [default: results/<name of the scene>-statics]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Print the results only; write no folder

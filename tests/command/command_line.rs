@@ -273,7 +273,7 @@ fn results_go_to_a_folder_named_after_the_scene() {
         assert!(run.status.success(), "{run:?}");
     }
     for name in [
-        "results/my bearing.v2/summary.json",
+        "results/my bearing.v2-statics/summary.json",
         "results/my bearing.v2-sweep/sweep.csv",
         "packs/my bearing.v2/manifest.json",
     ] {

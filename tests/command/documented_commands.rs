@@ -1,4 +1,4 @@
-//! Every command that the README shows is run, in a folder that holds nothing but the scenes.
+//! Every command of the README and of the guides is run, in a folder that contains nothing but the scenes.
 //!
 //! A documented command is a line of a ```console or ```sh block that starts with `bearing`, or
 //! `$ bearing`. A comment `# exit code N` at its end states another exit code than 0. Commands of
@@ -24,21 +24,39 @@ struct Documented {
 
 #[test]
 fn documented_commands_run() {
-    run_all(
-        "README.md",
-        &["check", "plan", "statics", "modes", "run", "sweep", "pack", "compare", "schema"],
-    );
+    run_all("README.md", &["statics", "run"]);
 }
 
-/// What docs/results.md shows of Python reads what a run wrote.
+#[test]
+fn commands_of_guides_run() {
+    let mut uses = Vec::new();
+    for page in pages_of_guide() {
+        uses.extend(run_all(&page, &[]));
+    }
+    for name in ["check", "plan", "statics", "modes", "run", "sweep", "pack", "compare"] {
+        assert!(uses.iter().any(|used| used == name), "no guide shows `bearing {name}`");
+    }
+}
+
+fn pages_of_guide() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide");
+    let names = fs::read_dir(folder).expect("docs/guide").map(|entry| entry.unwrap().file_name());
+    let mut pages: Vec<String> =
+        names.map(|name| format!("docs/guide/{}", name.to_string_lossy())).collect();
+    pages.sort();
+    assert!(pages.len() >= 9, "{pages:?}");
+    pages
+}
+
+/// What docs/guide/run.md shows of Python reads what a run wrote.
 #[test]
 fn documented_python_reads_a_run() {
     // VTK brings NumPy.
     let Some(python) = python_with_vtk("documented_python_reads_a_run") else { return };
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("results/settling");
+    let out = folder.path().join("results/settling-run");
     done(&["run", &scene("settling.toml"), "--out", &text(&out)]);
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/run.md");
     let page = fs::read_to_string(page).unwrap();
     let (_, block) = page.split_once("```python\n").expect("a block of Python");
     let (block, _) = block.split_once("```").unwrap();
@@ -67,8 +85,8 @@ fn lines_are_read_as_a_shell_would() {
     assert_eq!(found[0].prints, ["output"]);
 }
 
-/// Runs the commands of a page; `needed` are subcommands of which it must show at least one use.
-fn run_all(page: &str, needed: &[&str]) {
+/// Runs the commands of a page and returns their subcommands; `needed` must be among them.
+fn run_all(page: &str, needed: &[&str]) -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(root.join(page)).expect(page);
     let commands = documented(&text);
@@ -78,7 +96,7 @@ fn run_all(page: &str, needed: &[&str]) {
     }
     let folder = tempfile::tempdir().expect("temporary folder");
     copy_scenes(&root.join("scenes"), &folder.path().join("scenes"));
-    for command in commands {
+    for command in &commands {
         let output = Command::new(env!("CARGO_BIN_EXE_bearing"))
             .args(&command.arguments)
             .current_dir(folder.path())
@@ -101,6 +119,7 @@ fn run_all(page: &str, needed: &[&str]) {
             );
         }
     }
+    commands.into_iter().map(|command| command.arguments[0].clone()).collect()
 }
 
 /// The first of the shown lines that is not where it should be.

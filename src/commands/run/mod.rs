@@ -36,7 +36,7 @@ pub struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     changes: Changes,
-    /// Results folder [default: results/<name of the scene>]
+    /// Results folder [default: results/<name of the scene>-run]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Go on from the state in the results folder; the scene's end may be later than it was
@@ -73,7 +73,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let document = arguments.changes.read(&arguments.scene)?;
     let subject = resolve_subject(&document)?;
     check_end(&arguments.scene, &subject)?;
-    let folder = results_folder(&arguments.scene, &arguments.out);
+    let folder = results_folder(&arguments.scene, "run", &arguments.out);
     let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let kept = kept_state(arguments, &folder)?;
     let prepared = Prepared::new(&document, &subject)?;

@@ -172,11 +172,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
 
 /// Apart from the folder of a single solution, so that each holds one kind of results.
 fn sweep_folder(arguments: &Arguments) -> PathBuf {
-    arguments.out.clone().unwrap_or_else(|| {
-        let mut folder = results_folder(&arguments.scene, &None).into_os_string();
-        folder.push("-sweep");
-        folder.into()
-    })
+    results_folder(&arguments.scene, "sweep", &arguments.out)
 }
 
 fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
