@@ -5,7 +5,7 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use serde::{Deserialize, Deserializer, de};
+use serde::Deserialize;
 
 /// Text of every file of `src`, by its path from the root of the repository.
 pub type Sources = BTreeMap<String, String>;
@@ -52,32 +52,35 @@ impl Mutant {
     }
 }
 
-/// A check, written as its arguments: `--test NAME [FUNCTION]` or `--case ID`.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Check {
-    /// A file of `tests/` without `.rs`, and which of its tests. The first folder is the test binary.
-    Test { name: String, filter: Option<String> },
-    /// A verification case.
-    Case { id: String },
-}
+/// A check, written as its arguments: `--test NAME [FUNCTION]`, NAME a file of `tests/` without `.rs`, or `--case ID`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(try_from = "String")]
+pub struct Check(Vec<String>);
 
 impl Check {
-    /// Name of the test binary; `None` for a case.
+    /// Name of the test binary, the first folder below `tests/`; `None` for a case.
     pub fn binary(&self) -> Option<&str> {
-        match self {
-            Check::Test { name, .. } => name.split('/').next(),
-            Check::Case { .. } => None,
-        }
+        self.test().and_then(|(name, _)| name.split('/').next())
     }
 
-    fn parse(text: &str) -> Result<Check, String> {
-        let words: Vec<&str> = text.split_whitespace().collect();
-        match words[..] {
-            ["--test", name] => Ok(Check::Test { name: name.into(), filter: None }),
-            ["--test", name, filter] => {
-                Ok(Check::Test { name: name.into(), filter: Some(filter.into()) })
-            }
-            ["--case", id] => Ok(Check::Case { id: id.into() }),
+    /// File and function of a test.
+    pub fn test(&self) -> Option<(&str, Option<&str>)> {
+        (self.0[0] == "--test").then(|| (&*self.0[1], self.0.get(2).map(String::as_str)))
+    }
+
+    /// Id of a case.
+    pub fn case(&self) -> Option<&str> {
+        (self.0[0] == "--case").then_some(&self.0[1])
+    }
+}
+
+impl TryFrom<String> for Check {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Check, String> {
+        let words: Vec<String> = text.split_whitespace().map(String::from).collect();
+        match (words.first().map(String::as_str), words.len()) {
+            (Some("--test"), 2 | 3) | (Some("--case"), 2) => Ok(Check(words)),
             _ => Err(format!("`{text}` is no check: --test NAME [FUNCTION] or --case ID")),
         }
     }
@@ -85,19 +88,7 @@ impl Check {
 
 impl fmt::Display for Check {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Check::Test { name, filter: None } => write!(formatter, "--test {name}"),
-            Check::Test { name, filter: Some(filter) } => {
-                write!(formatter, "--test {name} {filter}")
-            }
-            Check::Case { id } => write!(formatter, "--case {id}"),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Check {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Check, D::Error> {
-        Check::parse(&String::deserialize(deserializer)?).map_err(de::Error::custom)
+        formatter.write_str(&self.0.join(" "))
     }
 }
 

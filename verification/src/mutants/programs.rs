@@ -106,18 +106,15 @@ impl Programs {
         let clock = Instant::now();
         let mut command = Command::new(program);
         command.current_dir(self.folder.join("tree")).env(switch::VARIABLE, number.to_string());
-        match check {
-            Check::Case { id } => {
-                let out = self.folder.join(format!("verify-{thread}"));
-                let golden = self.folder.join("tree/golden");
-                // The cache knows the sources, not the fault.
-                command.args(["--case", id, "--no-cache", "--out"]).arg(out);
-                command.arg("--golden").arg(golden);
-            }
-            Check::Test { name, filter } => {
-                let module = name.split_once('/').map(|(_, module)| format!("{module}::"));
-                command.args(filter.clone().or(module)).arg("--test-threads=1");
-            }
+        if let Some((name, function)) = check.test() {
+            let module = name.split_once('/').map(|(_, module)| format!("{module}::"));
+            command.args(function.map(String::from).or(module)).arg("--test-threads=1");
+        }
+        if let Some(id) = check.case() {
+            // The cache knows the sources, not the fault.
+            let out = self.folder.join(format!("verify-{thread}"));
+            command.args(["--case", id, "--no-cache", "--out"]).arg(out);
+            command.arg("--golden").arg(self.folder.join("tree/golden"));
         }
         // The same random inputs every time, and no snapshot is written.
         command.env("PROPTEST_RNG_SEED", "20").env("INSTA_UPDATE", "no");

@@ -1,10 +1,11 @@
 //! Sources with all faults at once: a function with faults gets one body for each of them, chosen by the
-//! environment variable `SEEDED_FAULT`.
+//! environment variable `SEEDED_FAULT`. The compiler takes no such bodies for a `const fn` or a function that returns
+//! `impl …`.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use syn::visit::{self, Visit};
+use syn::visit::Visit;
 
 use super::list::{Mutant, Sources};
 
@@ -15,7 +16,6 @@ pub const VARIABLE: &str = "SEEDED_FAULT";
 const SWITCH: &str = r#"
 /// Number of the fault to run with; 0 for none.
 #[doc(hidden)]
-#[allow(dead_code)]
 pub fn seeded_fault() -> usize {
     static NUMBER: std::sync::OnceLock<usize> = std::sync::OnceLock::new();
     let set = || std::env::var("SEEDED_FAULT").ok().and_then(|number| number.parse().ok());
@@ -26,8 +26,7 @@ pub fn seeded_fault() -> usize {
 /// The sources with a switch for each fault.
 ///
 /// # Errors
-/// When the text of a fault does not occur exactly once, or not within the body of a function that
-/// can have a switch.
+/// When the text of a fault does not occur exactly once, or not within the body of one function.
 pub fn switched(sources: &Sources, mutants: &[Mutant]) -> Result<Sources, String> {
     let mut by_file: BTreeMap<&str, Vec<(usize, &Mutant, usize)>> = BTreeMap::new();
     for (index, mutant) in mutants.iter().enumerate() {
@@ -63,13 +62,13 @@ pub fn switched(sources: &Sources, mutants: &[Mutant]) -> Result<Sources, String
     }
     for root in ["src/lib.rs", "src/main.rs"] {
         if let Some(text) = all.get_mut(root) {
-            *text += SWITCH;
+            *text = format!("#![allow(unused)]\n{text}{SWITCH}");
         }
     }
     Ok(all)
 }
 
-/// The text between the braces of each outermost function that can have a switch.
+/// The text between the braces of each outermost function.
 fn bodies(source: &str) -> Vec<Range<usize>> {
     let mut found = Bodies(Vec::new());
     if let Ok(file) = syn::parse_file(source) {
@@ -82,45 +81,24 @@ fn bodies(source: &str) -> Vec<Range<usize>> {
 struct Bodies(Vec<Range<usize>>);
 
 impl Bodies {
-    /// Whether the function can have a switch: it is not `const`, and its type is not `impl …`, which two
-    /// bodies would make two types.
-    fn take(&mut self, signature: &syn::Signature, block: &syn::Block) -> bool {
-        let mut unnamed = Unnamed(false);
-        unnamed.visit_return_type(&signature.output);
-        let fit = signature.constness.is_none() && !unnamed.0;
-        if fit {
-            let braces = block.brace_token.span;
-            self.0.push(braces.open().byte_range().end..braces.close().byte_range().start);
-        }
-        fit
+    fn take(&mut self, block: &syn::Block) {
+        let braces = block.brace_token.span;
+        self.0.push(braces.open().byte_range().end..braces.close().byte_range().start);
     }
 }
 
 impl<'ast> Visit<'ast> for Bodies {
     fn visit_item_fn(&mut self, item: &'ast syn::ItemFn) {
-        if !self.take(&item.sig, &item.block) {
-            visit::visit_item_fn(self, item);
-        }
+        self.take(&item.block);
     }
 
     fn visit_impl_item_fn(&mut self, item: &'ast syn::ImplItemFn) {
-        if !self.take(&item.sig, &item.block) {
-            visit::visit_impl_item_fn(self, item);
-        }
+        self.take(&item.block);
     }
 
     fn visit_trait_item_fn(&mut self, item: &'ast syn::TraitItemFn) {
-        if !item.default.as_ref().is_some_and(|block| self.take(&item.sig, block)) {
-            visit::visit_trait_item_fn(self, item);
+        if let Some(block) = &item.default {
+            self.take(block);
         }
-    }
-}
-
-/// Whether a type is `impl …`.
-struct Unnamed(bool);
-
-impl<'ast> Visit<'ast> for Unnamed {
-    fn visit_type_impl_trait(&mut self, _: &'ast syn::TypeImplTrait) {
-        self.0 = true;
     }
 }
