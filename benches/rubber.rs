@@ -1,4 +1,4 @@
-//! Explicit steps of rubber with fourteen Maxwell elements against a plain element loop; what fewer of them save.
+//! Explicit steps of rubber with fourteen Maxwell elements against a plain element loop.
 //!
 //! Not a criterion bench: ratios of least times in one run, with bounds that fail. The plain loop is written here,
 //! apart from the library.
@@ -9,7 +9,6 @@ mod plain;
 #[path = "common/turns.rs"]
 mod turns;
 
-use bearing_dynamics::ch2_housing::elastomer::merge::merged;
 use bearing_dynamics::ch2_housing::elastomer::named::table_3_1;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::Elements;
@@ -24,10 +23,6 @@ use turns::once_more;
 
 /// Least acceptable ratio up to 50 000 elements; docs/benchmarks.md has what was measured.
 const LEAST_OVER_PLAIN: f64 = if cfg!(target_feature = "avx512f") { 2.8 } else { 2.5 };
-
-/// Seconds of a run for which slow Maxwell elements are merged, and the error allowed for it.
-const DURATION: f64 = 0.1;
-const MERGED: f64 = 1e-3;
 
 /// A cube of 100 mm of the rubber of Table 3.1.
 fn body(cells: usize, mean_stress: MeanStress) -> RubberBody {
@@ -227,9 +222,7 @@ fn main() {
         }
     }
     println!("{LANES} lanes; millions of elements and steps a second");
-    println!(
-        "elements   plain   own volume   ratio   plain, around nodes   around nodes   ratio   merged   terms"
-    );
+    println!("elements   plain   own volume   ratio   plain, around nodes   around nodes   ratio");
     let mut ratios = Vec::new();
     // 3072, 13 182, 48 000 and 118 098 elements.
     for cells in [8, 13, 20, 27] {
@@ -238,14 +231,10 @@ fn main() {
         let (mut own_solid, mut around_solid) = (solid(&own), solid(&around));
         let mut plain = Plain::new(&own, &own_solid);
         let mut plain_around = Plain::new(&around, &around_solid);
-        let mut fewer = around.clone();
-        let terms = merged(&around.material.maxwell, DURATION, around_solid.step_size, MERGED);
-        fewer.material.maxwell = terms.elements;
-        let mut fewer_solid = solid(&fewer);
         let count = own.elements.len();
         let steps = (1_000_000 / count).max(2);
-        let mut seconds = [f64::MAX; 5];
-        let held = |seconds: &[f64; 5]| {
+        let mut seconds = [f64::MAX; 4];
+        let held = |seconds: &[f64; 4]| {
             [[0, 1], [2, 3]].iter().all(|[a, b]| seconds[*a] >= LEAST_OVER_PLAIN * seconds[*b])
         };
         // In turn, so that all see the same machine.
@@ -260,7 +249,6 @@ fn main() {
                 least(2, steps, |n| go(&mut own_solid, n)),
                 least(2, steps, |n| (0..n).for_each(|_| plain_around.step())),
                 least(2, steps, |n| go(&mut around_solid, n)),
-                least(2, steps, |n| go(&mut fewer_solid, n)),
             ];
             for (least, now) in seconds.iter_mut().zip(now) {
                 *least = least.min(now);
@@ -269,15 +257,8 @@ fn main() {
         let speed = seconds.map(|s| 1e-6 * count as f64 / s);
         let over_plain = [speed[1] / speed[0], speed[3] / speed[2]];
         println!(
-            "{count:8}   {:5.2}   {:10.2}   {:5.2}   {:19.2}   {:12.2}   {:5.2}   {:6.2}   {:5}",
-            speed[0],
-            speed[1],
-            over_plain[0],
-            speed[2],
-            speed[3],
-            over_plain[1],
-            speed[4],
-            fewer.material.maxwell.len(),
+            "{count:8}   {:5.2}   {:10.2}   {:5.2}   {:19.2}   {:12.2}   {:5.2}",
+            speed[0], speed[1], over_plain[0], speed[2], speed[3], over_plain[1],
         );
         ratios.push(over_plain);
     }

@@ -1,6 +1,6 @@
 //! Warnings of commands on bearings: one set for equilibria and runs.
 
-use crate::commands::bushing_remarks::{beyond_bushings, pushed};
+use crate::commands::bushing_remarks;
 use bearing_dynamics::assembly::lists::Bearing;
 use bearing_dynamics::assembly::loads::Rotation;
 use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
@@ -55,14 +55,14 @@ impl Seen {
 /// Warnings on an equilibrium.
 ///
 /// # Errors
-/// A section that is bent too far, a bushing that is pushed through its wall.
+/// A section that is bent too far.
 pub fn of_equilibrium(
     scene: &AssemblyScene,
     assembly: &StaticAssembly,
     solution: &AssemblySolution,
 ) -> Result<Vec<Warning>, Box<dyn Error>> {
     refuse_bent(assembly, solution)?;
-    let mut warnings = pushed(scene, assembly, solution)?;
+    let mut warnings = bushing_remarks::of_equilibrium(scene, assembly, solution);
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         let text = format!(
             "the position is one of many, because {} directions meet no stiffness: load or preload the bearings, or prescribe these coordinates",
@@ -142,7 +142,7 @@ pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
         }
     }
     warnings.extend(between_rows(scene, session.clock.row_interval()));
-    warnings.extend(beyond_bushings(scene, session));
+    warnings.extend(bushing_remarks::of_run(scene, session));
     warnings
 }
 

@@ -58,6 +58,11 @@ pub enum StaticsError {
         position: [f64; 3],
         tilts: [f64; 2],
     },
+    #[error(
+        "{spring} is pushed through the wall of its bushing: its sleeves are {across:.3e} m across from their places, the wall is \
+         {wall:.3e} m; check loads and their units, or take a thicker wall"
+    )]
+    ThroughWall { spring: String, across: f64, wall: f64 },
     #[error("the outer race{of} in its bore: {source}")]
     Seat { of: String, source: BoreError },
 }

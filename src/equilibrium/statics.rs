@@ -17,6 +17,7 @@ use crate::equilibrium::model::{Evaluation, Model};
 use crate::equilibrium::search::Search;
 use crate::equilibrium::verdict::{FAR, Modes};
 use crate::kinematics::Pose;
+use crate::members::rigid_body::{fixed, kinematics_at_mount};
 use crate::solids::bore_equilibrium::{BoreSearch, BoreState};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector, Vector3};
 
@@ -367,7 +368,25 @@ fn solve_directly<'b>(
     search.check_balance(&here)?;
     search.check_seats(&here, FAR)?;
     search.check_balls(&here)?;
+    check_walls(&model, &here)?;
     solution(&mut search, here, modes)
+}
+
+/// Sleeves of bushings, which have no place beyond their walls.
+fn check_walls(model: &Model, here: &Evaluation) -> Result<(), StaticsError> {
+    for connection in &model.assembly.connections {
+        let [one, other] = connection.ends.map(|mount| {
+            kinematics_at_mount(&fixed(&model.coordinates(mount.body, &here.at).into()), &mount)
+        });
+        let ([.., across], wall) = (connection.extension([&one, &other]), connection.wall());
+        // NaN is too far.
+        if across <= wall {
+            continue;
+        }
+        let spring = connection.name.clone();
+        return Err(StaticsError::ThroughWall { spring, across, wall });
+    }
+    Ok(())
 }
 
 fn solution(

@@ -41,6 +41,8 @@ pub struct SpringDashpot {
     pub maxwell: Vec<MaxwellElement>,
     /// Place of the second end in the first one's axes where no spring pulls, m.
     pub rest: Vec3,
+    /// Thickness of the wall of a bushing, m: its sleeves move across each other by less.
+    pub wall: Option<f64>,
 }
 
 /// Six springs, each in series with a dashpot: K e, where the elongation e (m, rad) of the spring follows the
@@ -109,8 +111,9 @@ impl Connection {
         }
     }
 
-    /// How far its springs are stretched and turned at most, m and rad, of directions that have a spring.
-    pub fn extension(&self, ends: [&BodyKinematics; 2]) -> [f64; 2] {
+    /// How far its springs are stretched and turned at most, m and rad, of directions that have a spring, and how far one end is
+    /// across the axis from its place, m.
+    pub fn extension(&self, ends: [&BodyKinematics; 2]) -> [f64; 3] {
         match &self.law {
             Law::SpringDashpot(law) => {
                 let axes = axes(ends);
@@ -124,11 +127,20 @@ impl Connection {
                     })
                 };
                 let stretch = [0, 1, 2].map(|i| dot(axes[i], arm) - law.rest[i]);
-                [far(0, stretch), far(3, turn.into())]
+                let across = libm::hypot(stretch[1], stretch[2]);
+                [far(0, stretch), far(3, turn.into()), across]
             }
             Law::Torsion(law) => {
-                [0.0, if law.stiffness == 0.0 { 0.0 } else { twist(ends).0.abs() }]
+                [0.0, if law.stiffness == 0.0 { 0.0 } else { twist(ends).0.abs() }, 0.0]
             }
+        }
+    }
+
+    /// Thickness of the wall of a bushing, m; without end of others.
+    pub fn wall(&self) -> f64 {
+        match &self.law {
+            Law::SpringDashpot(law) => law.wall.unwrap_or(f64::INFINITY),
+            Law::Torsion(_) => f64::INFINITY,
         }
     }
 

@@ -121,6 +121,11 @@ pub enum SimulationError {
     )]
     SpringBeyond { spring: String, how: String, time: f64, step: u64 },
     #[error(
+        "{spring} is pushed through the wall of its bushing at t = {at} s, step {step}: its sleeves are {across:.3e} m across from          their places, the wall is {wall:.3e} m; check loads and their units, or take a thicker wall",
+        at = display_time(*time)
+    )]
+    ThroughWall { spring: String, across: f64, wall: f64, time: f64, step: u64 },
+    #[error(
         "{body} has left {seat} at t = {at} s, step {step}: it is {distance:.3e} m off {way}, where {allowed:.3e} m \
          are left of its seat",
         at = display_time(*time)

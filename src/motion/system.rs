@@ -131,7 +131,7 @@ impl System {
     }
 
     /// [`Connection::reach`] as evaluated last.
-    pub(crate) fn extension(&self, connection: usize) -> [f64; 2] {
+    pub(crate) fn extension(&self, connection: usize) -> [f64; 3] {
         self.assembly.connections[connection].extension(self.ends(connection).each_ref())
     }
 

@@ -156,11 +156,16 @@ impl Simulation {
     fn watch_springs(&self) -> Result<(), SimulationError> {
         let system = &self.system;
         for (index, connection) in system.assembly.connections.iter().enumerate() {
-            let [stretch, turn] = system.extension(index);
+            let [stretch, turn, across] = system.extension(index);
+            let wall = connection.wall();
             // NaN is too far.
             let (reaches, turns) = (stretch <= FARTHEST, turn <= FARTHEST_TURN);
-            if reaches && turns {
+            if reaches && turns && across <= wall {
                 continue;
+            }
+            let (spring, time, step) = (connection.name.clone(), self.time, self.steps);
+            if reaches && turns {
+                return Err(SimulationError::ThroughWall { spring, across, wall, time, step });
             }
             let how = if reaches {
                 let [turn, allowed] = [turn, FARTHEST_TURN].map(|of| to_digits(of.to_degrees(), 6));
@@ -168,7 +173,6 @@ impl Simulation {
             } else {
                 format!("stretched by {} m, more than {FARTHEST} m", to_digits(stretch, 6))
             };
-            let (spring, time, step) = (connection.name.clone(), self.time, self.steps);
             return Err(SimulationError::SpringBeyond { spring, how, time, step });
         }
         Ok(())

@@ -31,7 +31,6 @@
 pub mod amounts;
 pub mod assembly_results;
 pub mod atomic;
-pub mod bushing_reach;
 pub mod compare;
 pub mod fields;
 pub mod folder;

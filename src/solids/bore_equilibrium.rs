@@ -13,7 +13,7 @@ use crate::kinematics::vec3::{Vec3, norm};
 use crate::numeric::clock::to_digits;
 use crate::numeric::dense::DenseFactor;
 use crate::numeric::sparse::FactorError;
-use crate::solids::condensation::{BoreNode, CondensedBore, lever, race_motion};
+use crate::solids::condensation::{CondensedBore, lever, race_motion};
 use nalgebra::{Matrix4, Vector4};
 use thiserror::Error;
 
@@ -482,10 +482,4 @@ pub(crate) fn check_load(fit: &Fit, load: &RaceLoad) -> Result<Vector4<f64>, Bor
 
 fn check_finite(what: &'static str, value: f64) -> Result<(), BoreError> {
     if value.is_finite() { Ok(()) } else { Err(BoreError::NotFinite { what, value }) }
-}
-
-/// Radius of the race that makes `interference` (m; negative for a clearance) in this bore: the mean
-/// distance of its nodes from the axis, and that.
-pub fn radius_of_fit(nodes: &[BoreNode], interference: f64) -> f64 {
-    nodes.iter().map(|node| node.distance).sum::<f64>() / nodes.len() as f64 + interference
 }

@@ -17,8 +17,9 @@ use bearing_dynamics::equilibrium::statics::{
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::rigid_body;
 use bearing_dynamics::members::rigid_body::kinematics_at_mount;
-use bearing_dynamics::motion::simulation::{Simulation, Start};
+use bearing_dynamics::motion::simulation::{Simulation, SimulationError, Start};
 use bearing_dynamics::motion::stability::step_limit;
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
@@ -121,12 +122,28 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     };
     let assembly = Assembly {
         bodies: vec![moved, body("ground", Mobility::Fixed)],
-        connections: vec![connection],
+        connections: vec![connection.clone()],
         ..Assembly::default()
     };
     let state = start::at_equilibrium(&assembly).unwrap();
     let at = bearing_dynamics::members::rigid_body::fixed(&found.coordinates[0].into());
     assert_eq!(state[..13], at.state.to_array());
+    // A wall thinner than the way across ends search and motion.
+    let ends = [rigid_body::fixed(&[0.0; 5]), kinematics_at_mount(&at, &connection.ends[1])];
+    let [.., across] = connection.extension([&ends[0], &ends[1]]);
+    let walled = |wall: f64| {
+        let mut assembly = assembly.clone();
+        let Law::SpringDashpot(law) = &mut assembly.connections[0].law else { panic!("springs") };
+        law.wall = Some(wall);
+        assembly
+    };
+    assert!(start::at_equilibrium(&walled(1.01 * across)).is_ok());
+    let thin = walled(0.99 * across);
+    let refused = start::at_equilibrium(&thin).unwrap_err();
+    assert!(matches!(refused, StaticsError::ThroughWall { .. }), "{refused}");
+    let mut moving = Simulation::new(thin, fixed_step(1e-6, Start::Nominal)).unwrap();
+    let ended = (0..100_000).find_map(|_| moving.step().err()).unwrap();
+    assert!(matches!(ended, SimulationError::ThroughWall { .. }), "{ended}");
     // Without its spring nothing holds it.
     let mut loose = assembly.clone();
     loose.connections.clear();

@@ -40,6 +40,7 @@ pub const SPRING: SpringDashpot = SpringDashpot {
     stiffness: [2e6, 3e6, 5e6, 40.0, 900.0, 700.0],
     damping: [200.0, 100.0, 300.0, 0.05, 0.4, 0.7],
     rest: [1e-3, -2e-3, 0.5e-3],
+    wall: None,
     maxwell: Vec::new(),
 };
 

@@ -95,7 +95,6 @@ fn statics_balances_bearing_and_housing() {
             assert!(fields.contains(&format!("\"{field}\"")), "{field}");
         }
         assert!(value(&summary["largest"]["von_mises_of_elements"]) > 0.0);
-        assert!(value(&summary["inertia"]["lowest_frequency"]) > 100.0);
     }
 }
 
@@ -233,10 +232,7 @@ fn plan_and_check_say_what_is_chosen_and_offered() {
     for part in ["does  explicit housing", "windows of", tested] {
         assert!(said.contains(part), "{part}: {said}");
     }
-    assert!(
-        said.contains("quasi-static instead") && said.contains("memory of condensing"),
-        "{said}"
-    );
+    assert!(said.contains("memory of condensing"), "{said}");
     // It factorises nothing: a limit far below what factors need refuses a run by equilibria alone.
     let little = ["--memory", "0.001"];
     let said = succeed(command("plan", &place.path("explicit.toml"), &little));

@@ -86,30 +86,6 @@ mod json {
     }
 }
 
-mod bushing_reach {
-    use bearing_dynamics::assembly::mount::Mount;
-    use bearing_dynamics::kinematics::euler::quaternion;
-    use bearing_dynamics::output::bushing_reach::*;
-    use nalgebra::Vector3;
-
-    #[test]
-    fn a_mount_beside_the_centre_goes_where_a_tilted_body_takes_it() {
-        let mount = Mount { along: 0.08, ..Mount::at_centre(0) };
-        let values = [3e-6, -7e-6, 5e-6, 0.011, -0.017];
-        let place = place(Some([0, 1, 2, 3, 4]), &mount, &values);
-        let [tilt_y, tilt_z] = [values[3], values[4]].map(f64::to_radians);
-        let carried = quaternion(0.0, tilt_y, tilt_z) * Vector3::new(0.08, 0.0, 0.0);
-        for i in 0..3 {
-            // Of a small turn the square is left out: 0.08 m × (3e-4 rad)².
-            assert!(
-                (place[i] - values[i] - carried[i]).abs() <= 0.08 * 1e-7,
-                "{place:?} {carried}"
-            );
-        }
-        assert_eq!(place[3..], [tilt_y, tilt_z]);
-    }
-}
-
 mod visible {
     use bearing_dynamics::output::visible::*;
     use std::borrow::Cow;

@@ -48,7 +48,8 @@ fn a_bushing_is_the_springs_that_it_condenses_to() {
     assert!((given.body.thickness - body.thickness).abs() <= 1e-15);
     let made = bushing(&given.body, &mesh).unwrap().quadratic().unwrap().mesh;
     let own = bushing_spring(&made, Part::Quarter, &named::table_3_1(), TAU * 2000.0).unwrap();
-    assert_eq!(law(&scene), SpringDashpot { rest: [0.0; 3], ..own.law });
+    let wall = Some(given.body.thickness);
+    assert_eq!(law(&scene), SpringDashpot { rest: [0.0; 3], wall, ..own.law });
     assert_eq!(given.misses, own.misses);
     assert!(own.misses.iter().all(|miss| *miss <= 2e-4), "{:?}", own.misses);
 }
@@ -159,4 +160,13 @@ fn springs_end_at_races_where_those_sit() {
     let document = Document::read_str(&alone, Format::Toml, "scene").unwrap();
     let error = resolve_subject(&document).unwrap_err().to_string();
     assert!(error.contains("left.outer_race, right.outer_race"), "{error}");
+}
+
+/// Rubber begins outside the race that it holds.
+#[test]
+fn rubber_inside_its_race_is_refused() {
+    let begins = |at: &str| read(&[SMALL, ("inner_diameter = \"71 mm\"", at)]);
+    let error = begins("inner_diameter = \"70.9 mm\"").unwrap_err();
+    assert!(error.contains("inner_diameter") && error.contains("of 71 mm"), "{error}");
+    assert!(begins("inner_diameter = \"71.0 mm\"").is_ok());
 }

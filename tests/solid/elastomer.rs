@@ -1,11 +1,10 @@
-//! Rubber: the network beside its printed form, Maxwell elements and what they may be merged to.
+//! Rubber: the network beside its printed form and Maxwell elements.
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::{
     DashpotFactors, Maxwell, StepFactors, carried, commit, complex_factor, curvature_error,
     spring_energy,
 };
-use bearing_dynamics::ch2_housing::elastomer::merge::merged;
 use bearing_dynamics::ch2_housing::elastomer::{ElastomerError, named};
 use bearing_dynamics::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use std::f64::consts::TAU;
@@ -317,81 +316,6 @@ fn complex_stiffness_is_what_a_swing_reads() {
         assert!(storage >= expected[0] && loss >= expected[1]);
     }
     assert_eq!(complex_factor(&rubber.maxwell, 0.0), [1.0, 0.0]);
-}
-
-/// The largest variation of a course of (dt, change) within any `window` s.
-fn within(course: &[(f64, f64)], window: f64) -> f64 {
-    let mut times = vec![0.0];
-    course.iter().for_each(|(dt, _)| times.push(times[times.len() - 1] + dt));
-    // A window begins or ends at a corner; jumps at its edges count.
-    let of = |from: f64, to: f64| -> f64 {
-        let parts = course.iter().zip(times.windows(2)).map(|((dt, change), t)| {
-            let (a, b) = (t[0].max(from), t[1].min(to));
-            let part = if *dt > 0.0 { (b - a) / dt } else { 1.0 };
-            if a <= b { part * change.abs() } else { 0.0 }
-        });
-        parts.sum()
-    };
-    let each = times.iter().map(|t| of(*t, t + window).max(of(t - window, *t)));
-    each.fold(0.0, f64::max)
-}
-
-fn sums_along(elements: &[Maxwell], course: &[(f64, f64)]) -> Vec<f64> {
-    let mut history = vec![[0.0; 6]; elements.len()];
-    let step = |(dt, change): &(f64, f64)| {
-        let factors = StepFactors::of(elements, *dt).unwrap();
-        commit(&mut history, &[*change, 0.0, 0.0, 0.0, 0.0, 0.0], &factors);
-        history.iter().map(|h| h[0]).sum()
-    };
-    course.iter().map(step).collect()
-}
-
-/// Even steps, and steps among which are jumps and some that are a tenth as long as was said.
-#[test]
-fn merged_elements_stay_within_their_bounds() {
-    let rubber = named::table_3_1();
-    // A run of 10 ms in steps of 20 µs: slow from 0.1 s on, fast up to 2 µs.
-    let (duration, dt, steps) = (1e-2, 2e-5, 500);
-    let wave = |t: f64| (300.0 * t).sin() + 20.0 * t;
-    let change = |n: usize| wave((n + 1) as f64 * dt) - wave(n as f64 * dt);
-    let even: Vec<(f64, f64)> = (0..steps).map(|n| (dt, change(n))).collect();
-    let mut uneven = even[..450].to_vec();
-    for (n, step) in
-        [(40, (0.0, 1.0)), (41, (0.0, -0.3)), (90, (0.1 * dt, 0.2)), (91, (0.1 * dt, 0.2))]
-    {
-        uneven.insert(n, step);
-    }
-    let mut fewest = rubber.maxwell.len();
-    for tolerance in [1e-6, 1e-4, 1e-2] {
-        let fewer = merged(&rubber.maxwell, duration, dt, tolerance);
-        assert!(fewer.elements.len() <= fewest);
-        fewest = fewer.elements.len();
-        assert!(fewer.slow_bound <= tolerance && fewer.fast_bound <= tolerance);
-        for course in [&even, &uneven] {
-            let variation: f64 = course.iter().map(|(_, change)| change.abs()).sum();
-            let usual = fewer.slow_bound * variation + fewer.fast_bound * within(course, dt);
-            let always = usual + fewer.sudden_bound * within(course, dt);
-            let full = sums_along(&rubber.maxwell, course);
-            let found = sums_along(&fewer.elements, course);
-            let (mut worst, mut worst_sudden) = (0.0f64, 0.0f64);
-            for ((a, b), (step, _)) in full.iter().zip(&found).zip(course) {
-                let of = if *step >= dt { &mut worst } else { &mut worst_sudden };
-                *of = of.max((a - b).abs());
-            }
-            // 1e-13: rounding of sums where nothing or little was merged.
-            assert!(worst <= usual + 1e-13, "{tolerance}: {worst:e} {usual:e}");
-            assert!(worst_sudden <= always + 1e-13, "{tolerance}: {worst_sudden:e} {always:e}");
-            // A bound that is a hundred times the error would merge too little.
-            assert!(usual <= 100.0 * worst + 1e-13, "{tolerance}: {worst:e} {usual:e}");
-            // At a jump the bound of long steps does not hold, and is not said to.
-            let jumps = course.len() != steps && fewer.sudden_bound > 0.0;
-            assert!(!jumps || worst_sudden > 10.0 * usual, "{tolerance}: {worst_sudden:e}");
-        }
-    }
-    assert!(fewest <= 9, "{fewest}");
-    assert_eq!(merged(&rubber.maxwell, duration, dt, 0.0).elements, rubber.maxwell);
-    assert_eq!(merged(&rubber.maxwell, f64::NAN, f64::NAN, 1e-2).elements, rubber.maxwell);
-    assert!(merged(&[], duration, dt, 1e-3).elements.is_empty());
 }
 
 #[test]

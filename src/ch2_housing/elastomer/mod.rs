@@ -8,7 +8,6 @@ pub mod eight_chain;
 pub mod five_terms;
 pub mod langevin;
 pub mod maxwell;
-pub mod merge;
 pub mod named;
 
 use eight_chain::EightChain;

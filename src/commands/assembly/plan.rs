@@ -6,7 +6,6 @@ use super::lists::Lists;
 use super::shapes::{Shapes, shapes};
 use super::windows::windows_text;
 use super::{Fallible, housings, still};
-use crate::commands::bushing_remarks::of_bushings;
 use crate::commands::plan::say_plan;
 use crate::commands::plan_step::{note, refused, step_lines};
 use crate::commands::run::{self, planned_request};
@@ -61,7 +60,6 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         (Some(settings), _) => of_steps(lists, &housings, reduced.as_ref(), settings)?,
     };
     notes.extend(warnings::of_bushings(scene).iter().map(ToString::to_string));
-    notes.extend(of_bushings(scene).iter().map(|said| note("bushing", said)));
     for housing in &housings {
         notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
     }

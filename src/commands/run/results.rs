@@ -4,7 +4,6 @@ use super::figures::key_figures;
 use super::prepared::{Fields, Prepared, SolidOf, Way};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
-use crate::commands::bushing_remarks::refuse_pushed_through;
 use crate::commands::say;
 use crate::commands::warnings::{aliased, of_run};
 use bearing_dynamics::equilibrium::quasi_static_sequence::Course;
@@ -136,10 +135,7 @@ pub(super) fn write_results(
     let fields = std::fs::read_dir(folder.join(FOLDER)).map_or(0, |files| files.count() + 1);
     let files = written.len() + plots.len() + fields + said.files + 1;
     say(&format!("wrote {files} files to {}\n", folder.display()))?;
-    match prepared {
-        Prepared::Bearings { lists, .. } => Ok(refuse_pushed_through(lists.scene, session)?),
-        Prepared::Solid { .. } | Prepared::Rubber { .. } => Ok(()),
-    }
+    Ok(())
 }
 
 /// Fields of the last row, where none were due there.

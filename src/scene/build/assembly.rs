@@ -358,7 +358,8 @@ impl AssemblyScene {
             let [from, to] = spring.ends.map(|end| self.place(end));
             let Spring { stiffness, damping, .. } = *spring;
             let (maxwell, rest) = (spring.maxwell.clone(), [to - from, 0.0, 0.0]);
-            let law = Law::SpringDashpot(SpringDashpot { stiffness, damping, maxwell, rest });
+            let wall = spring.bushing.as_ref().map(|of| of.body.thickness);
+            let law = Law::SpringDashpot(SpringDashpot { stiffness, damping, maxwell, rest, wall });
             let label = Some(spring.name.clone());
             Connection { name: format!("the spring {}", spring.name), label, ends, law }
         });

@@ -189,22 +189,6 @@ impl BushingElements {
         BondedPart { name, sleeves, spring, elements, window_phase }
     }
 
-    /// The same elements in implicit steps of at most so many seconds: what explicit steps are held against.
-    ///
-    /// # Errors
-    /// As [`RubberBody::implicit`].
-    pub fn in_implicit_steps(&self, step: Option<f64>) -> Result<BushingElements, RubberError> {
-        let mut same = BushingElements { solved: Solved::Implicit { step }, ..self.clone() };
-        if let Solved::Explicit { body, .. } = &self.solved {
-            same.model = body.implicit()?;
-            same.model.mass = body.model()?.mass;
-            for node in same.sleeves.iter().flat_map(|sleeve| &sleeve.nodes) {
-                same.model.mass[*node as usize] = 0.0;
-            }
-        }
-        Ok(same)
-    }
-
     /// As a plan has it, the `index`-th solid of a run.
     pub fn planned(&self, index: usize) -> Bonded<'_> {
         let problem = &self.model.problem;

@@ -4,7 +4,6 @@ pub mod about;
 pub mod assembly;
 pub mod bore_shape;
 pub mod bushing;
-pub mod bushing_reach;
 pub mod deck_materials;
 pub mod excitations;
 pub mod housing;

@@ -8,7 +8,6 @@ pub mod driven;
 pub mod error;
 pub mod explicit;
 pub mod harmonic;
-pub mod holds;
 pub mod measures;
 pub mod model;
 pub mod newton;

@@ -64,18 +64,6 @@ pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
     relaxed_while(model, t, |_| true)
 }
 
-/// As [`relaxed`], in parts that change strains by up to `strain` in place of 2 %: sooner where nothing folds.
-///
-/// # Errors
-/// As there.
-pub(crate) fn relaxed_in_parts(
-    model: &RubberModel,
-    t: f64,
-    strain: f64,
-) -> Result<Relaxed, RelaxedError> {
-    relaxed_on_a_way(model, t, PathLimits { strain, ..WAY }, |_| true)
-}
-
 /// As [`relaxed`], as long as what is shown the part that has been reached says to go on.
 ///
 /// # Errors
@@ -83,15 +71,6 @@ pub(crate) fn relaxed_in_parts(
 pub fn relaxed_while(
     model: &RubberModel,
     t: f64,
-    go_on: impl FnMut(f64) -> bool,
-) -> Result<Relaxed, RelaxedError> {
-    relaxed_on_a_way(model, t, WAY, go_on)
-}
-
-fn relaxed_on_a_way(
-    model: &RubberModel,
-    t: f64,
-    way: PathLimits,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Relaxed, RelaxedError> {
     let ramp = |to: f64| Profile::Ramp { from: 0.0, to, start: 0.0, duration: 1.0 };
@@ -105,7 +84,7 @@ fn relaxed_on_a_way(
     }
     let stepping = Stepping::Fixed(1.0);
     let options =
-        StepOptions { stepping, smallest: 1e-7, way: Some(way), ..StepOptions::default() };
+        StepOptions { stepping, smallest: 1e-7, way: Some(WAY), ..StepOptions::default() };
     let mut solid = RubberSolid::new(&model, options)?;
     let mut reached = Vec::new();
     let ended = solid.advance_while(1.0, |solid| {

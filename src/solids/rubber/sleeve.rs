@@ -1,7 +1,7 @@
 //! How stiff a bonded bushing is against each small rigid motion of its inner sleeve.
 
 use crate::ch2_housing::elastomer::Elastomer;
-use crate::kinematics::vec3::{Vec3, add_scaled, scale};
+use crate::kinematics::vec3::Vec3;
 use crate::mesh::generate::Part;
 use crate::mesh::{Elements, TetMesh};
 use crate::numeric::profile::Profile;
@@ -34,20 +34,6 @@ impl SleeveMotion {
             SleeveMotion::Axial => [1.0, 0.0, 0.0],
             SleeveMotion::Torsional => [0.0, -z, y],
             SleeveMotion::Conical => [z, 0.0, -x],
-        }
-    }
-
-    /// Displacement of a place (m) by so much of the motion, m or rad.
-    pub fn displacement_by(self, amount: f64, place: Vec3) -> Vec3 {
-        let once = self.displacement(place);
-        match self {
-            SleeveMotion::Radial | SleeveMotion::Axial => scale(once, amount),
-            // R r − r about an axis n: sin a (n × r) + (1 − cos a) n × (n × r).
-            SleeveMotion::Torsional | SleeveMotion::Conical => {
-                let half = libm::sin(0.5 * amount);
-                let twice = scale(self.displacement(once), 2.0 * half * half);
-                add_scaled(twice, libm::sin(amount), once)
-            }
         }
     }
 
