@@ -22,9 +22,9 @@ test:
 	@status=0; $(CARGO) test --release --locked $(PACKAGES) || status=$$?; \
 	if [ -s $(SKIPPED) ]; then printf '\nNot all was tested:\n'; sort -u $(SKIPPED); fi; exit $$status
 
-## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"; CASE=scenes for the rows of all scenes, CASE=crooked for what crooked ones say
+## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"; CASE=asymmetric for the asymmetric scenes
 golden:
-	$(if $(filter scenes crooked,$(CASE)),FREEZE_REASON="$(REASON)" $(CARGO) test --release --locked $(PACKAGES) --test command $(if $(filter scenes,$(CASE)),frozen,crooked)_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
+	$(if $(filter asymmetric,$(CASE)),GOLDEN_REASON="$(REASON)" $(CARGO) test --release --locked $(PACKAGES) --test command asymmetric_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
 
 ## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:

@@ -329,10 +329,11 @@ fn the_force_of_a_bore_does_not_swing_from_row_to_row() {
 #[test]
 fn a_tilted_race_that_nothing_pushes_along_is_free_as_it_is_held() {
     let folder = tempfile::tempdir().unwrap();
-    let crooked =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/crooked/housing_quasi_static.toml");
+    let asymmetric = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data/asymmetric/housing_quasi_static.toml");
     let rows = ["free", "held"].map(|axial| {
-        let content = changed(&read(&crooked), "axial = \"free\"", &format!("axial = \"{axial}\""));
+        let content =
+            changed(&read(&asymmetric), "axial = \"free\"", &format!("axial = \"{axial}\""));
         let out = folder.path().join(axial);
         done(&["statics", &write(folder.path(), "scene.toml", &content), "--out", &text(&out)]);
         let summary = json(&out.join("summary.json"));
