@@ -17,7 +17,7 @@ use std::fs;
 use std::panic::catch_unwind;
 use std::path::Path;
 
-const USUAL_INPUTS: usize = 4_000;
+const USUAL_INPUTS: usize = 1_500;
 const SEED: u64 = 0x0f11_e5f0_5eed_0001;
 
 /// What the process may take at most, bytes; it is told by Linux alone.

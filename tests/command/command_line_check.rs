@@ -3,7 +3,7 @@
 use crate::command_line_common;
 
 use command_line_common::{
-    ANGULAR_CONTACT, DEEP_GROOVE, bearing_scenes, changed, done, json, read, scene, text, write,
+    ANGULAR_CONTACT, DEEP_GROOVE, changed, done, json, read, scene, text, write,
 };
 use serde_json::{Value, json};
 use std::path::Path;
@@ -126,19 +126,18 @@ fn solution(folder: &Path, path: &str) -> (String, Vec<u8>, Value) {
 #[test]
 fn a_scene_in_json_gives_the_bits_of_the_one_in_toml() {
     let root = tempdir().unwrap();
-    let mut compared = 0;
-    let tables = bearing_scenes().into_iter().filter(|name| name.ends_with(".toml"));
-    // Springs of a bushing are fitted anew by every command, which takes a second: one of three is enough.
-    for name in tables
-        .filter(|name| !["creep_on_rubber.toml", "dented_on_bushing.toml"].contains(&&name[..]))
-    {
+    for name in [
+        "angular_contact_axial.toml",
+        "cage_600rpm.toml",
+        "deep_groove_tilt.toml",
+        "interference_fit.toml",
+        "shaft_back_to_back.toml",
+    ] {
         let path = scene(&name);
         let value: Value = toml::from_str(&read(Path::new(&path))).unwrap();
         let same = write(root.path(), "scene.json", &value.to_string());
         assert!(solution(root.path(), &path) == solution(root.path(), &same), "{name}");
-        compared += 1;
     }
-    assert!(compared >= 4);
 }
 
 #[test]

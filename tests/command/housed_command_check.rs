@@ -217,3 +217,19 @@ fn files_of_fields_are_foretold() {
     let told = lines(&checked(&place, &text).0, "fields").remove(0);
     assert!(told.contains("50001 files") && told.contains("WARNING: that is much"), "{told}");
 }
+
+#[test]
+fn other_commands_say_what_they_take() {
+    let place = Place::new();
+    let scene = place
+        .scene("scene.toml", &scene_text("fit.radial = \"1 um\"", "[numerics]\nend = \"1 ms\"\n"));
+    let output = command("sweep", &scene, &["--vary", "housing.method=rigid,explicit"]).output();
+    let output = output.unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("sweep the two by themselves"), "{}", stderr(&output));
+    // Without an end there is nothing to run, but an equilibrium.
+    let still = place.scene("still.toml", &scene_text("", ""));
+    let output = command("run", &still, &[]).output().unwrap();
+    assert!(stderr(&output).contains("a run needs `end`"), "{}", stderr(&output));
+    succeed(command("statics", &still, &["--dry"]));
+}

@@ -73,24 +73,18 @@ fn under_a_bent_shaft_it_starts_in_the_common_equilibrium() {
     let place = Place::new();
     let shipped = include_str!("../../scenes/rotor_in_pillow_blocks.toml");
     let short = shipped.replace("end = \"2 ms\"", "end = \"20 us\"");
-    let none = "clearance = { radial = \"0 um\" }";
-    let stiff = short.replace(none, "clearance = { radial = \"-15 um\" }");
     let loose = short.replace("fit = { radial = \"2.5 um\" }", "fit = { radial = \"-2.5 um\" }");
-    assert!(stiff != short && loose != short);
-    for (which, text) in [("stiff", stiff), ("loose", loose)] {
-        let [reduced, course] = ["reduced", "quasi-static"].map(|method| {
-            let text = text.replace("method = \"reduced\"", &format!("method = \"{method}\""));
-            let name = format!("{which}-{method}");
-            let (scene, folder) = (place.scene(&format!("{name}.toml"), &text), place.path(&name));
-            succeed(into_folder("run", &scene, &folder, &[]));
-            folder
-        });
-        for name in ["left_inner_z", "left_outer_z", "shaft_mid_z", "left_outer_tilt_y"] {
-            let [ours, theirs] =
-                [&reduced, &course].map(|of| column(&of.join("series.csv"), name)[0]);
-            println!("{which} {name}: {:.1e}", ours / theirs - 1.0);
-            assert!((ours / theirs - 1.0).abs() <= NEAR, "{which} {name}: {ours:e} {theirs:e}");
-        }
+    assert!(loose != short);
+    let [reduced, course] = ["reduced", "quasi-static"].map(|method| {
+        let text = loose.replace("method = \"reduced\"", &format!("method = \"{method}\""));
+        let (scene, folder) = (place.scene(&format!("{method}.toml"), &text), place.path(method));
+        succeed(into_folder("run", &scene, &folder, &[]));
+        folder
+    });
+    for name in ["left_inner_z", "left_outer_z", "shaft_mid_z", "left_outer_tilt_y"] {
+        let [ours, theirs] = [&reduced, &course].map(|of| column(&of.join("series.csv"), name)[0]);
+        println!("{name}: {:.1e}", ours / theirs - 1.0);
+        assert!((ours / theirs - 1.0).abs() <= NEAR, "{name}: {ours:e} {theirs:e}");
     }
 }
 

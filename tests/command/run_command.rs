@@ -154,7 +154,7 @@ fn a_run_leaves_a_results_folder() {
 fn interrupted_by_a_signal_and_resumed() {
     let place = Place::new();
     // A second or so, whatever the machine: the signal comes in the middle.
-    let numerics = "end = \"800.001 ms\"\nstep = \"2 us\"\noutput_interval = \"0.4 ms\"";
+    let numerics = "end = \"300.001 ms\"\nstep = \"2 us\"\noutput_interval = \"0.4 ms\"";
     let scene = place.scene("scene.toml", &scene(numerics, ALL_PLOTS));
     let whole = place.path("whole");
     let parts = place.path("parts");

@@ -16,7 +16,7 @@ use std::fs;
 use std::panic::catch_unwind;
 use std::path::PathBuf;
 
-const USUAL_INPUTS: usize = 6_000;
+const USUAL_INPUTS: usize = 2_000;
 const SEED: u64 = 0x3e54_f11e_5eed_0001;
 
 const WORDS: &[&str] = &[

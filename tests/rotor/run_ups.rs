@@ -114,17 +114,14 @@ fn a_rotor_without_damping_passes_its_critical_speed() {
     assert!(damped.residual <= 1e-2 && free.residual <= 1e-2, "{:e}", free.residual);
 }
 
-/// A hundredth and a hundred times the disc: far above its critical speed the heavy one turns about its centre of mass,
+/// A hundred times the disc: far above its critical speed the heavy one turns about its centre of mass,
 /// its unbalance over its mass off the axis.
 #[test]
-fn light_and_heavy_discs_pass() {
-    for (mass, low, high) in [("0.2 kg", 1e-4, 2e-2), ("2000 kg", 1e-7, 2e-6)] {
-        let disc = format!("mass = \"{mass}\"");
-        let passage = run_up(&[("mass = \"20 kg\"", &disc)]).unwrap();
-        println!("{mass}: {:e} m, {:e}", passage.peak, passage.residual);
-        assert!(passage.peak >= low && passage.peak <= high, "{mass}: {:e}", passage.peak);
-        assert!(passage.residual <= 1e-2, "{mass}: {:e}", passage.residual);
-    }
+fn a_heavy_disc_passes() {
+    let passage = run_up(&[("mass = \"20 kg\"", "mass = \"2000 kg\"")]).unwrap();
+    println!("{:e} m, {:e}", passage.peak, passage.residual);
+    assert!(passage.peak >= 1e-7 && passage.peak <= 2e-6, "{:e}", passage.peak);
+    assert!(passage.residual <= 1e-2, "{:e}", passage.residual);
 }
 
 /// With 50 um of clearance balls are lost and struck again.
@@ -137,22 +134,19 @@ fn lost_contact_is_passed() {
 }
 
 #[test]
-fn overhung_discs_and_unequal_bearings_pass() {
+fn an_overhung_disc_on_unequal_bearings_passes() {
     let overhung = [
-        ("inner_at = \"200 mm\"", "inner_at = \"100 mm\""),
+        ("inner_at = \"200 mm\"", "inner_at = \"100 mm\"\nballs = 6"),
         ("disc = [{ at = \"0 mm\"", "disc = [{ at = \"200 mm\""),
         (
             "unbalance = [{ at = \"0 mm\", size = \"1e-3",
             "unbalance = [{ at = \"200 mm\", size = \"1e-4",
         ),
     ];
-    let unequal = [("inner_at = \"200 mm\"", "inner_at = \"200 mm\"\nballs = 6")];
-    for (name, changes) in [("overhung", &overhung[..]), ("unequal", &unequal[..])] {
-        let passage = run_up(changes).unwrap();
-        println!("{name}: {:e} m, {:e}", passage.peak, passage.residual);
-        assert!(passage.peak >= 1e-6 && passage.peak <= 1e-3, "{name}: {:e}", passage.peak);
-        assert!(passage.residual <= 1e-2, "{name}: {:e}", passage.residual);
-    }
+    let passage = run_up(&overhung).unwrap();
+    println!("{:e} m, {:e}", passage.peak, passage.residual);
+    assert!(passage.peak >= 1e-6 && passage.peak <= 1e-3, "{:e}", passage.peak);
+    assert!(passage.residual <= 1e-2, "{:e}", passage.residual);
 }
 
 /// 1000 N at the overhung end of a shaft of a third of the diameter bend it beyond what its theory stands for.

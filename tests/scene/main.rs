@@ -12,7 +12,6 @@ mod scene_bushing;
 mod scene_defaults;
 mod scene_docs;
 mod scene_dynamics;
-mod scene_dynamics_errors;
 mod scene_errors;
 mod scene_fuzz;
 mod scene_lists;

@@ -20,7 +20,7 @@ use fuzz_common::Random;
 use std::collections::HashSet;
 use std::panic::catch_unwind;
 
-const USUAL_INPUTS: usize = 20_000;
+const USUAL_INPUTS: usize = 5_000;
 const SEED: u64 = 0x5ce2_e5ee_d000_0001;
 
 /// Numbers at the edges of doubles, integers, ranges and syntax.

@@ -71,12 +71,9 @@ fn pulled(
 #[test]
 fn great_strain_of_several_cells() {
     for stretch in [0.2, 4.0] {
-        for (cells, material, sides) in [
-            (3, (1e2, 0.0), Sides::Guided),
-            (2, (1e5, 0.0), Sides::Guided),
-            (3, (1e2, 1.0), Sides::Bonded),
-            (2, (1e5, 1.0), Sides::Bonded),
-        ] {
+        for (cells, material, sides) in
+            [(2, (1e5, 0.0), Sides::Guided), (2, (1e5, 1.0), Sides::Bonded)]
+        {
             let (reached, counts, ended) = pulled(cells, material, sides, stretch);
             let what = format!("{cells} {material:?} {sides:?} to {stretch}");
             assert_eq!(ended, None, "{what}: {reached}");
@@ -88,7 +85,7 @@ fn great_strain_of_several_cells() {
     }
     // Stretched, the free sides of the network alone do not fold either, between bonded ends if there are cells enough
     // at their corners: with two along an edge of the eighth it ends at 3.65, with one at 2.44.
-    for (cells, sides) in [(2, Sides::Free), (3, Sides::Free), (3, Sides::Bonded)] {
+    for (cells, sides) in [(2, Sides::Free), (3, Sides::Bonded)] {
         assert_eq!(pulled(cells, (1e2, 0.0), sides, 4.0).2, None, "{cells} {sides:?}");
     }
     let (reached, _, ended) = pulled(1, (1e2, 0.0), Sides::Bonded, 4.0);
@@ -104,14 +101,12 @@ fn great_strain_of_several_cells() {
 fn free_sides_of_the_network_alone_fold() {
     let wrinkles = 0.2956f64.powf(2.0 / 3.0);
     assert_eq!(pulled(1, (1e2, 0.0), Sides::Free, 0.2).2, None);
-    for cells in [2, 3] {
-        let (reached, counts, ended) = pulled(cells, (1e2, 0.0), Sides::Free, 0.2);
-        let Some(RubberError::NoEquilibrium { failure, .. }) = ended else { panic!("{ended:?}") };
-        assert_eq!(failure, StepFailure::Unstable, "{cells}: {reached}");
-        // Not before half of Biot's compression nor far behind it; steps are cut down until nothing is left.
-        assert!((reached - wrinkles).abs() <= 0.1, "{cells}: {reached} {wrinkles}");
-        assert!(counts.undone > 20, "{counts:?}");
-    }
+    let (reached, counts, ended) = pulled(2, (1e2, 0.0), Sides::Free, 0.2);
+    let Some(RubberError::NoEquilibrium { failure, .. }) = ended else { panic!("{ended:?}") };
+    assert_eq!(failure, StepFailure::Unstable, "{reached}");
+    // Not before half of Biot's compression nor far behind it; steps are cut down until nothing is left.
+    assert!((reached - wrinkles).abs() <= 0.1, "{reached} {wrinkles}");
+    assert!(counts.undone > 20, "{counts:?}");
 }
 
 /// A bonded bushing, its inner sleeve moved aside: equilibria of the network end at a fold whether 13 or 17 mm are asked
@@ -126,7 +121,7 @@ fn equilibria_end_at_a_fold_that_long_parts_pass() {
             Ok(found) => panic!("{asked}: all the way in {} parts", found.steps),
         }
     };
-    let ends = [13e-3, 14.5e-3, 17e-3].map(end);
+    let ends = [13e-3, 17e-3].map(end);
     println!("{ends:?}");
     for one in ends {
         // Parts are cut down to 1e-7 of what is asked for.

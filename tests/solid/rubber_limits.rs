@@ -63,7 +63,7 @@ fn cube_beside_bar(
 /// pressed cube flat; see [`super::rubber_great_strain`] for the network alone.
 #[test]
 fn cubes_under_great_strain() {
-    for (bulk, cells) in [(1e2, 1), (1e2, 3), (1e5, 1), (1e5, 2)] {
+    for (bulk, cells) in [(1e2, 2), (1e5, 1)] {
         let rubber = rubber_of(chains(bulk), &[Maxwell { gamma: 1.0, tau: 1.0 }; 2]);
         for stretch in [0.2, 4.0] {
             let [moved, held] = cube_beside_bar(&rubber, cells, stretch, 3.0 / 80.0, 80);
@@ -384,7 +384,7 @@ fn ends_without_equilibrium_are_told() {
 #[test]
 fn a_step_that_failed_spoils_no_other() {
     let body = Bushing { inner_diameter: 0.0197, thickness: 0.00835, length: 0.06 };
-    let cells = BushingMesh { around: 8, radial: 4, axial: 3, grading: 1.0, part: Part::Quarter };
+    let cells = BushingMesh { around: 6, radial: 3, axial: 2, grading: 1.0, part: Part::Quarter };
     let mesh = bushing(&body, &cells).unwrap().quadratic().unwrap().mesh;
     let ramp = Profile::Ramp { from: 0.0, to: 5e-3, start: 0.0, duration: 5.0 };
     let prescribed = supports(

@@ -1,4 +1,4 @@
-//! Two hundred random scenes, as a user writes them: each comes to its end with a closed ledger and
+//! Sixty random scenes, as a user writes them: each comes to its end with a closed ledger and
 //! nothing inside anything, or ends with an error that says what has happened.
 
 use crate::dynamics::Noise;
@@ -226,10 +226,10 @@ pub fn run_scene(text: &str) -> Outcome {
 }
 
 #[test]
-fn two_hundred_random_scenes_end_sound_or_say_why() {
+fn sixty_random_scenes_end_sound_or_say_why() {
     let mut ended = Vec::new();
     let (mut complete, mut met, mut worst, mut deepest, mut steps) = (0, 0, 0.0f64, 0.0f64, 0);
-    for seed in 0..200 {
+    for seed in 0..60 {
         let text = scene_text(seed, 0.25);
         let outcome = run_scene(&text);
         steps += outcome.steps;
@@ -249,6 +249,6 @@ fn two_hundred_random_scenes_end_sound_or_say_why() {
     println!(
         "{complete} complete, {met} with balls that met, worst residual {worst:e}, deepest {deepest:e}, {steps} steps"
     );
-    assert!(complete >= 190, "{complete}");
-    assert!(met >= 25, "{met}");
+    assert!(complete >= 56, "{complete}");
+    assert!(met >= 7, "{met}");
 }
