@@ -1,15 +1,9 @@
-//! `pack` and `compare` on what the solver really writes: equal passes, and nothing that differs
-//! by ten times its tolerance goes unnoticed.
+//! `pack` and `compare` on what the solver really writes.
 
 use crate::command_line_common;
 
-use bearing_dynamics::output::compare::tolerance::ToleranceClass;
-use bearing_dynamics::output::compare::{
-    Comparison, DivergenceKind, Options, compare, is_ignored_by_name, report,
-};
-use bearing_dynamics::output::series::Series;
-use command_line_common::{bearing, changed, done, json, read, refused, scene, text, write};
-use serde_json::{Value, json};
+use command_line_common::{bearing, changed, done, read, refused, scene, text, write};
+use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::{TempDir, tempdir};
@@ -165,117 +159,6 @@ fn what_cannot_be_compared_is_named() {
     fs::write(notes.join("notes.txt"), "mine").unwrap();
     let message = refused(&["pack", &path, "--out", &text(&notes)]);
     assert!(message.contains("\"notes.txt\", which is not part of a case pack"), "{message}");
-}
-
-// The perturbations go through the library, which the command calls with the same options: some
-// thousand comparisons, each of which would start a process.
-
-fn compared(reference: &Path, candidate: &Path, class: ToleranceClass) -> Comparison {
-    let options = Options { default_class: Some(class), ..Options::default() };
-    compare(reference, candidate, &options).unwrap()
-}
-
-/// Beyond any tolerance.
-const GROSS: f64 = 1e30;
-
-/// What is allowed at a place, as the comparison says when it is handed a gross error there.
-fn allowed(gross: &Comparison) -> f64 {
-    match gross.first_divergence.as_ref().expect("a gross error is found").kind {
-        DivergenceKind::Value { allowed, .. } => allowed,
-        ref other => panic!("expected a difference in value, got {other:?}"),
-    }
-}
-
-#[test]
-fn every_cell_of_a_real_series_is_watched() {
-    let (_root, _, pack, results) = packed();
-    let (expected, given) = (pack.join("series.csv"), results.join("series.csv"));
-    let series = Series::read_csv(&expected).unwrap();
-    assert_eq!(series.data().dim(), (8, 24));
-    for class in [ToleranceClass::F64Reordered, ToleranceClass::Mixed] {
-        for ((row, column), &value) in series.data().indexed_iter() {
-            let check = |changed: f64| {
-                let mut data = series.data().clone();
-                data[(row, column)] = changed;
-                let altered = Series::new(series.columns().to_vec(), data).unwrap();
-                fs::write(&given, altered.to_csv().unwrap()).unwrap();
-                compared(&expected, &given, class)
-            };
-            let allowed = allowed(&check(value + GROSS));
-            let found = check(value + 10.0 * allowed);
-            let first = found.first_divergence.as_ref().expect("10 × tolerance is found");
-            assert!(!found.equal && found.differing == 1, "{}", report(&found));
-            assert_eq!(first.channel, series.columns()[column].name);
-            assert_eq!(first.place, format!("row {0} (ball {0})", row + 1));
-            assert!(check(value + 0.1 * allowed).equal, "{first:?}");
-        }
-    }
-}
-
-/// JSON pointers of all leaves.
-fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
-    match value {
-        Value::Object(map) => {
-            map.iter().for_each(|(key, item)| pointers(item, &format!("{at}/{key}"), found));
-        }
-        Value::Array(items) => {
-            let items = items.iter().enumerate();
-            items.for_each(|(i, item)| pointers(item, &format!("{at}/{i}"), found));
-        }
-        _ => found.push(at.to_string()),
-    }
-}
-
-/// `/balls/2/inner/load/value` → `balls[2].inner.load`.
-fn path_of(pointer: &str) -> String {
-    let pointer = pointer.strip_suffix("/value").or(pointer.strip_suffix("/unit"));
-    let mut path = String::new();
-    for part in pointer.expect("the pointer of a quantity").split('/').skip(1) {
-        match part.parse::<usize>() {
-            Ok(index) => path += &format!("[{index}]"),
-            Err(_) if path.is_empty() => path += part,
-            Err(_) => path += &format!(".{part}"),
-        }
-    }
-    path
-}
-
-#[test]
-fn every_quantity_of_a_real_summary_is_watched() {
-    let (_root, _, pack, results) = packed();
-    let (expected, given) = (pack.join("summary.json"), results.join("summary.json"));
-    let summary = json(&expected);
-    let mut leaves = Vec::new();
-    pointers(&summary, "", &mut leaves);
-    leaves.retain(|leaf| leaf.ends_with("/value"));
-    let (mut watched, mut ignored) = (0, Vec::new());
-    for pointer in &leaves {
-        let path = path_of(pointer);
-        let check = |changed: f64| {
-            let mut altered = summary.clone();
-            *altered.pointer_mut(pointer).unwrap() = json!(changed);
-            fs::write(&given, altered.to_string()).unwrap();
-            compared(&expected, &given, ToleranceClass::F64Reordered)
-        };
-        let value = summary.pointer(pointer).unwrap().as_f64().unwrap();
-        let gross = check(value + GROSS);
-        if is_ignored_by_name(&path) {
-            assert!(gross.equal, "{}", report(&gross));
-            ignored.push(path);
-            continue;
-        }
-        let allowed = allowed(&gross);
-        assert!(check(value + 0.1 * allowed).equal, "{path}");
-        let found = check(value + 10.0 * allowed);
-        let first = found.first_divergence.as_ref().expect(&path);
-        assert!(!found.equal && found.differing == 1, "{}", report(&found));
-        assert!(first.place == path || first.place.starts_with(&format!("{path} (ball ")));
-        assert!(report(&found).contains(&first.place));
-        watched += 1;
-    }
-    assert_eq!(ignored, ["seconds.read", "seconds.solve"]);
-    // 8 balls of 22 quantities, 25 of the stiffness and the rest.
-    assert!(watched > 8 * 22 + 25 + 50, "{watched}");
 }
 
 /// What is not there is said to be missing, and results of different kinds to be of different kinds.

@@ -224,7 +224,7 @@ fn the_energy_of_a_blow_balances() {
             start_with(blow(mounted([0.0; 5])), true, damping, f64::INFINITY, &options);
         assert_eq!(housed.solids[0].steps, if solid_fraction == 0.1 { 5 } else { 1 });
         let mut worst = 0.0f64;
-        while housed.time() < 3e-3 {
+        while housed.time() < 1.5e-3 {
             for _ in 0..50 {
                 housed.advance().unwrap();
             }

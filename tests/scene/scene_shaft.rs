@@ -264,7 +264,7 @@ fn a_body_may_be_a_mesh() {
         let segments = "segments = [{ length = \"300 mm\", outer_diameter = \"30 mm\" }, { length = \"100 mm\", outer_diameter = \"24 mm\" }]";
         read(&format!("[body.shaft.beam]\nstart = \"-200 mm\"\n{segments}\n{mesh}")).unwrap()
     };
-    let (beam, solid) = (body(""), body("mesh = { order = 2 }"));
+    let (beam, solid) = (body(""), body("mesh = { order = 2, longest_layer = \"20 mm\" }"));
     let [of_beam, of_solid] = [&beam, &solid].map(|all| all.bodies[0].inertia().unwrap());
     // Quadratic edges of 22.5 degrees leave 1e-4 of the circle.
     for (ours, theirs) in [
