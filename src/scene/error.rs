@@ -223,12 +223,6 @@ pub enum Problem {
     )]
     GrooveDoesNotFit { groove: f64, ball: f64 },
     #[error(
-        "the outer groove radius {} reaches the bearing axis. Allowed: less than the race's own radius, {}. \
-         Hint: was the race radius given as groove radius?",
-        mm(*.groove), mm(*.race)
-    )]
-    GrooveReachesAxis { groove: f64, race: f64 },
-    #[error(
         "{count} balls of radius {} do not fit on a pitch radius of {}. Allowed: up to {largest} balls. \
          Hint: fewer or smaller balls, or check the races' radii",
         mm(*.ball), mm(*.pitch)

@@ -3,7 +3,6 @@
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::Sym3;
 use crate::numeric::sparse::{Memory, Task};
-use crate::solids::model::SolidModel;
 use crate::solids::modes;
 use crate::solids::rubber::model::RubberModel;
 use crate::solids::tangent::Unknowns;

@@ -191,41 +191,6 @@ fn a_course_of_a_bending_shaft_is_told_from_its_centre_of_mass() {
     }
 }
 
-/// An interference that is there at once strikes race and housing; one that grows in, or a start in equilibrium, does not.
-#[test]
-fn a_fit_that_is_whole_at_once_is_told() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let nominal = ("[numerics]", "[numerics]\nstart = \"nominal\"");
-    let fit = |to| ("fit = { radial = \"1 um\" }", to);
-    let grows = fit("fit = { radial = \"1 um\" }\nfit_ramp = \"1 ms\"");
-    let loose = fit("fit = { radial = \"-1 um\" }");
-    let cases = [
-        ("settled", vec![], 0),
-        ("struck", vec![nominal], 2),
-        ("grows", vec![nominal, grows], 0),
-        ("loose", vec![nominal, loose], 0),
-    ];
-    for (name, changes, count) in cases {
-        let path = variant(folder.path(), name, &changes);
-        let told = done(&["check", &path]).matches("is in its whole fit at once").count();
-        assert_eq!(told, count, "{name}");
-    }
-    // A race told by its size: whether it is an interference is the mesh's to say.
-    let sized = [nominal, fit("outer_radius = \"35.53 mm\"")];
-    let said = done(&["check", &variant(folder.path(), "sized", &sized)]);
-    assert_eq!(
-        said.matches("where housing.outer_radius is more than the bore's").count(),
-        2,
-        "{said}"
-    );
-    let path = variant(folder.path(), "struck", &[nominal, ("end = \"1 ms\"", "end = \"50 us\"")]);
-    let out = text(&folder.path().join("out"));
-    for command in [&["plan"][..], &["run", "--out", &out]] {
-        let said = done(&[command, &[&path]].concat());
-        assert_eq!(said.matches("is in its whole fit at once").count(), 2, "{said}");
-    }
-}
-
 /// Items of a plan are told apart by the names of their seats.
 #[test]
 fn no_two_items_of_a_plan_have_one_name() {

@@ -159,21 +159,6 @@ fn sizes_of_generated_meshes_are_echoed_with_units() {
     }
 }
 
-/// A race that turns as it is told does so whatever acts on it.
-#[test]
-fn a_given_speed_of_the_outer_race_is_noted() {
-    let place = Place::new();
-    let still = scene_text("method = \"explicit\"\nfit.radial = \"2 um\"", RUN);
-    let turning = still.replace("motion = \"5-dof\"", "motion = \"5-dof\"\nspeed = \"100 rpm\"");
-    for (text, noted) in [(still, false), (turning, true)] {
-        let (said, _) = checked(&place, &text);
-        let scene = place.path("scene.toml");
-        for said in [said, succeed(command("plan", &scene, &[]))] {
-            assert_eq!(said.contains("at the speed that is given"), noted, "{said}");
-        }
-    }
-}
-
 /// Fields come with rows: what interval that makes, how many files and how large they are is known before the run.
 #[test]
 fn files_of_fields_are_foretold() {

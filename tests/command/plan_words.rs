@@ -107,7 +107,7 @@ fn parts_that_do_not_go_together_are_refused() {
     let shaft = |diameter: &str| format!("outer_diameter = \"{diameter}\"");
     let thick = message("stepped_rotor.toml", ("outer_diameter = \"40 mm\"", &shaft("48.1 mm")));
     // The groove of the 6208 has 48 mm.
-    assert!(thick.contains("body.shaft is 48.1 mm thick here, more than the 48 mm"), "{thick}");
+    assert!(thick.contains("body.rotor is 48.1 mm thick here, more than the 48 mm"), "{thick}");
     said_of(&["check"], "stepped_rotor.toml", &[("outer_diameter = \"40 mm\"", &shaft("47.9 mm"))]);
     let inner = |diameter: &str| format!("inner_diameter = \"{diameter}\"");
     let bushing = "bearing_on_bushing.toml";
@@ -130,20 +130,20 @@ fn parts_that_do_not_go_together_are_refused() {
             ),
             "more than 5.953 mm to 7.1436 mm",
         ),
-        (("-9.80665 m/s^2", "-9806 m/s^2"), "-2000 to 2000 m/s^2"),
+        (("-9.80665 m/s^2", "-9806 m/s^2"), "from -2000 m/s^2 to 2000 m/s^2"),
         (
             (
                 "[bearing.ball]\nradius = \"5.953 mm\"\nmaterial = { youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7850",
                 "[bearing.ball]\nradius = \"5.953 mm\"\nmaterial = { youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7.85",
             ),
-            "500 to 25000 kg/m^3",
+            "from 500 kg/m^3 to 25000 kg/m^3",
         ),
         (
             (
                 "[bearing.ball]\nradius = \"5.953 mm\"\nmaterial = { youngs_modulus = \"210 GPa\"",
                 "[bearing.ball]\nradius = \"5.953 mm\"\nmaterial = { youngs_modulus = \"210 MPa\"",
             ),
-            "0.5 to 1000 GPa",
+            "from 0.5 GPa to 1000 GPa",
         ),
     ] {
         let said = message(cage, change);

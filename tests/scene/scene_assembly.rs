@@ -298,7 +298,7 @@ y = \"2 um\"
 #[test]
 fn every_bearings_balls_press_outwards_by_their_own_speed() {
     let text = format!(
-        "{}[bearing.right.ball]\nradius = \"5 mm\"\n[ball_forces]\ncentrifugal = true\n",
+        "{}[bearing.right.ball]\nradius = \"5.6 mm\"\n[ball_forces]\ncentrifugal = true\n",
         [BEARING, PLACED]
             .concat()
             .replace("[inner_race.apart]\n", "[inner_race.apart]\nspeed = \"700 rpm\"\n")
@@ -306,7 +306,7 @@ fn every_bearings_balls_press_outwards_by_their_own_speed() {
     let still = scene(&text).statics().unwrap();
     for (bearing, (ball, inner, outer)) in still.bearings.iter().zip([
         (5.953e-3, 1000.0, -200.0),
-        (5e-3, 1000.0, 0.0),
+        (5.6e-3, 1000.0, 0.0),
         (5.953e-3, 700.0, 0.0),
     ]) {
         let gamma = ball / 30e-3 * 35f64.to_radians().cos();

@@ -136,13 +136,6 @@ fn groove(reader: &Reader, race: &str, ball: f64, nominal: f64) -> Result<f64, S
     }
 }
 
-/// The key that states a race's groove.
-fn groove_key(reader: &Reader, race: &str) -> String {
-    let keys = ["conformity", "osculation"].map(|name| format!("{race}.{name}"));
-    let given = keys.into_iter().find(|key| reader.is_given(key));
-    given.unwrap_or_else(|| format!("{race}.groove_radius"))
-}
-
 fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     if reader.is_given("bearing.contact_angle") {
         return Err(reader.document.refused(
@@ -234,10 +227,6 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     let nominal_ball = ball_given.unwrap_or(ball);
     let inner_groove = groove(reader, "bearing.inner_race", ball, nominal_ball)?;
     let outer_groove = groove(reader, "bearing.outer_race", ball, nominal_ball)?;
-    if outer_groove >= outer {
-        let problem = Problem::GrooveReachesAxis { groove: outer_groove, race: outer };
-        return Err(reader.document.error(&groove_key(reader, "bearing.outer_race"), problem));
-    }
     let pitch = reader.given_number("bearing.pitch_radius").unwrap_or(0.5 * (inner + outer));
     // A twentieth of the ball's radius is far more than any clearance or rounding of a catalogue.
     let (half_way, slack) = (0.5 * (inner + outer), 0.05 * ball);
