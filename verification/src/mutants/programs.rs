@@ -42,13 +42,7 @@ impl Programs {
         fs::create_dir_all(&folder).map_err(|error| at(&folder, &error))?;
         let folder = folder.canonicalize().map_err(|error| at(&folder, &error))?;
         let tree = folder.join("tree");
-        // A file that is gone would be tested, too.
-        let cleared = if tree.exists() { fs::remove_dir_all(&tree) } else { Ok(()) };
-        cleared.and_then(|()| copy(root, &tree)).map_err(|error| at(&tree, &error))?;
-        for (name, text) in sources {
-            let path = tree.join(name);
-            fs::write(&path, text).map_err(|error| at(&path, &error))?;
-        }
+        copy(root, &tree, Path::new(""), sources).map_err(|error| at(&tree, &error))?;
         let binaries: BTreeSet<Option<&str>> = checks.iter().map(|check| check.binary()).collect();
         let mut command =
             Command::new(std::env::var("CARGO").unwrap_or_else(|_| String::from("cargo")));
@@ -170,16 +164,30 @@ fn tests_in(log: &Path, check: &Check) -> usize {
     text.lines().filter_map(count).sum()
 }
 
-/// Copies a folder without what is built or hidden, but with the settings of cargo.
-fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from)? {
+/// Makes the folder `below` of `tree` that of `root` with other `sources`, without what is built or hidden but for the
+/// settings of cargo. A file that is the same stays, so that cargo does not build it again.
+fn copy(root: &Path, tree: &Path, below: &Path, sources: &Sources) -> std::io::Result<()> {
+    let (from, to) = (root.join(below), tree.join(below));
+    fs::create_dir_all(&to)?;
+    for entry in fs::read_dir(&to)? {
+        let (path, name) = entry.map(|entry| (entry.path(), entry.file_name()))?;
+        if !from.join(name).exists() {
+            if path.is_dir() { fs::remove_dir_all(path)? } else { fs::remove_file(path)? }
+        }
+    }
+    for entry in fs::read_dir(&from)? {
         let (path, name) = entry.map(|entry| (entry.path(), entry.file_name()))?;
         let hidden = name.to_string_lossy().starts_with('.') && name != ".cargo";
+        let below = below.join(&name);
         if path.is_dir() && name != "target" && !hidden {
-            copy(&path, &to.join(&name))?;
+            copy(root, tree, &below, sources)?;
         } else if path.is_file() && !hidden {
-            fs::copy(&path, to.join(&name))?;
+            let source = below.to_str().and_then(|name| sources.get(name));
+            let contents =
+                source.map_or_else(|| fs::read(&path), |text| Ok(text.clone().into()))?;
+            if fs::read(to.join(&name)).ok().as_ref() != Some(&contents) {
+                fs::write(to.join(&name), contents)?;
+            }
         }
     }
     Ok(())
