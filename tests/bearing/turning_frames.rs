@@ -2,17 +2,20 @@
 
 use crate::common::table_4_1;
 use crate::connected_bodies::free;
-use crate::connections::{SPRING, kinds};
+use crate::connections::kinds;
 use crate::dynamics::{Noise, RPM, bearing};
 use crate::dynamics_integrators::started;
 
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::assembly::state::{BODY, BodyState, ORIENTATION, Places, SPIN};
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
-use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::connection::Law;
+use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
+use bearing_dynamics::motion::linearised::Linearised;
 use bearing_dynamics::motion::rosenbrock as ros;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
+use bearing_dynamics::motion::system::System;
 use bearing_dynamics::motion::turning_frame::TurningFrames;
 use nalgebra::{Matrix2, Quaternion, UnitQuaternion, Vector2, Vector3};
 
@@ -82,57 +85,88 @@ fn angle(body: &[f64]) -> f64 {
     2.0 * q.i.atan2(q.w)
 }
 
-/// Two bodies that rotate against each other on a torsion spring, or tilt against each other on a spring, in steps many
-/// times longer than its period. They follow the linear algebra of the method for two equations without any frame.
+/// The matrix sees the rotation of the frames as it sees the same rotation of the bodies.
 #[test]
-fn rotation_between_turning_frames_is_that_of_the_method_without_frames() {
-    let inertia = hollow_cylinder(5e-3, 20e-3, 60e-3, 7850.0);
-    let torsion = kinds().swap_remove(1).law;
-    let Law::Torsion(of) = &torsion else { panic!("the second kind is torsion") };
-    let twist = (inertia.axial, of.stiffness, of.damping);
-    let spring = SpringDashpot { rest: [0.0; 3], ..SPRING };
-    let tilt =
-        |axis: usize| (inertia.transverse, spring.stiffness[3 + axis], spring.damping[3 + axis]);
-    let (about_y, about_z) = (tilt(1), tilt(2));
-    let tilting = Law::SpringDashpot(spring);
-    for (axis, law, (inertia, stiffness, damping)) in
-        [(0, torsion, twist), (1, tilting.clone(), about_y), (2, tilting, about_z)]
-    {
-        let matrix = [[0.0, 1.0], [-2.0 * stiffness / inertia, -2.0 * damping / inertia]];
-        let matrix = Matrix2::from_fn(|i, j| matrix[i][j]);
-        let ends = [0, 1].map(|body| Mount { body, along: 0.0, reversed: false });
-        let assembly = Assembly {
-            bodies: vec![free("one"), free("other")],
-            connections: vec![Connection { name: "spring".into(), label: None, ends, law }],
-            ..Assembly::default()
-        };
-        let places = Places::of(&assembly);
-        let mut state = vec![0.0; places.state_len()];
-        // Angles of microradians, to whose square the spring is linear.
-        let spins = [3e-3, -1e-3];
-        for (body, size) in spins.into_iter().enumerate() {
-            let mut at = BodyState::at_rest([0.0; 3]);
-            at.spin[axis] = size;
-            state[places.body(body)..places.body(body) + BODY].copy_from_slice(&at.to_array());
-        }
-        let step = 2e-3;
-        let options = RunOptions {
-            integrator: Integrator::Rosenbrock,
-            stepping: Stepping::Fixed(step),
-            energy_limit: f64::INFINITY,
-            ..RunOptions::default()
-        };
-        let mut simulation = Simulation::from_state(assembly, options, state, 0.0).unwrap();
-        let mut angle = Vector2::new(0.0, spins[0] - spins[1]);
-        for n in 0..4 {
-            simulation.step().unwrap();
-            angle = rosenbrock_step(&matrix, step, angle);
-            let [one, other] = [0, 1].map(|body| simulation.body(body).spin[axis]);
-            let error = (one - other - angle[1]).abs();
-            assert!(error <= 1e-9 * angle[1].abs(), "{axis} {n}: {} for {}", one - other, angle[1]);
-            // Nothing acts from outside: the mean stays.
-            assert!((one + other - spins[0] - spins[1]).abs() <= 1e-15, "{n}: {one} {other}");
-        }
+fn frames_act_on_connections_as_their_bodies_do() {
+    let assembly = Assembly {
+        bodies: vec![free("one"), free("other")],
+        connections: kinds(),
+        ..Assembly::default()
+    };
+    let mut system = System::new(assembly, Kernel::Simd);
+    let mut noise = Noise(23);
+    let mut random = |size: f64| {
+        (0..system.places.state_len()).map(|_| size * noise.next()).collect::<Vec<f64>>()
+    };
+    let (mut state, right, mut drift) = (random(1e-3), random(1.0), random(1.0));
+    let rotations = [0, 1].map(|body| system.places.body(body) + ORIENTATION);
+    let rotates = |i: usize| rotations.iter().any(|at| (*at..at + 4).contains(&i));
+    for at in rotations {
+        let q = UnitQuaternion::from_quaternion(
+            quaternion(&state, at - ORIENTATION) + Quaternion::from_real(1.0),
+        );
+        state[at..at + 4].copy_from_slice(&[q.w, q.i, q.j, q.k]);
+    }
+    (0..drift.len()).filter(|i| !rotates(*i)).for_each(|i| drift[i] = 0.0);
+    let mut linearised = Linearised::new(&system);
+    system.evaluate_with(Want::ForcesAndSlopes, 0.0, &state, &mut vec![0.0; state.len()]);
+    linearised.update(&system, &state);
+    let mut matrix = BlockArrowMatrix::new(&system, &linearised);
+    matrix.factor(&linearised, 1e-3);
+    let mut solve = |drift: &[f64], right: &[f64]| {
+        let mut found = vec![0.0; right.len()];
+        matrix.solve(&linearised, &system.sets, &state, drift, right, &mut found);
+        found
+    };
+    let by_frames = solve(&drift, &right);
+    let moved: Vec<f64> = right.iter().zip(&drift).map(|(r, d)| r + d).collect();
+    let by_bodies = solve(&vec![0.0; drift.len()], &moved);
+    for i in 0..drift.len() {
+        let (frames, bodies) = (by_frames[i] + drift[i], by_bodies[i]);
+        let error = (frames - bodies).abs();
+        assert!(error <= 1e-11 * (1.0 + bodies.abs()), "{i}: {frames} {bodies}");
+    }
+}
+
+/// Two bodies that turn against each other on a torsion spring, in steps many times longer than its period, do what the
+/// method's own linear algebra does of two equations without any frame.
+#[test]
+fn twist_between_turning_frames_is_that_of_the_method_without_frames() {
+    let torsion = kinds().swap_remove(1);
+    let Law::Torsion(law) = &torsion.law else { panic!("the second kind is torsion") };
+    let axial = hollow_cylinder(5e-3, 20e-3, 60e-3, 7850.0).axial;
+    let matrix = [[0.0, 1.0], [-2.0 * law.stiffness / axial, -2.0 * law.damping / axial]];
+    let matrix = Matrix2::from_fn(|i, j| matrix[i][j]);
+    let assembly = Assembly {
+        bodies: vec![free("one"), free("other")],
+        connections: vec![torsion],
+        ..Assembly::default()
+    };
+    let places = Places::of(&assembly);
+    let mut state = vec![0.0; places.state_len()];
+    // Angles of microradians, to whose square the spring is linear.
+    let spins = [3e-3, -1e-3];
+    for (body, spin) in spins.into_iter().enumerate() {
+        let at = BodyState { spin: [spin, 0.0, 0.0], ..BodyState::at_rest([0.0; 3]) };
+        state[places.body(body)..places.body(body) + BODY].copy_from_slice(&at.to_array());
+    }
+    let step = 2e-3;
+    let options = RunOptions {
+        integrator: Integrator::Rosenbrock,
+        stepping: Stepping::Fixed(step),
+        energy_limit: f64::INFINITY,
+        ..RunOptions::default()
+    };
+    let mut simulation = Simulation::from_state(assembly, options, state, 0.0).unwrap();
+    let mut twist = Vector2::new(0.0, spins[0] - spins[1]);
+    for n in 0..4 {
+        simulation.step().unwrap();
+        twist = rosenbrock_step(&matrix, step, twist);
+        let [one, other] = [0, 1].map(|body| simulation.body(body).spin[0]);
+        let error = (one - other - twist[1]).abs();
+        assert!(error <= 1e-9 * twist[1].abs(), "{n}: {} for {}", one - other, twist[1]);
+        // Nothing acts from outside: the mean stays.
+        assert!((one + other - spins[0] - spins[1]).abs() <= 1e-15, "{n}: {one} {other}");
     }
 }
 
