@@ -29,7 +29,6 @@ fn one_turn(points: usize) -> Course {
         }),
         shaft_speed: Profile::ZERO,
         interference: Profile::ZERO,
-        weight: [0.0; 3],
         centrifugal: false,
     }
 }

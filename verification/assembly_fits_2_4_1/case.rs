@@ -98,7 +98,6 @@ fn course(interference: f64) -> Course {
         rotating_load: None,
         shaft_speed: Profile::Constant(SPEED),
         interference: grown,
-        weight: [0.0; 3],
         centrifugal: true,
     }
 }

@@ -108,7 +108,6 @@ fn turn(
         }),
         shaft_speed: Profile::ZERO,
         interference: Profile::ZERO,
-        weight: [0.0; 3],
         centrifugal: false,
     };
     let bearing = bearing()?;

@@ -158,8 +158,6 @@ pub struct Course {
     pub shaft_speed: Profile,
     /// Added to the race's radius, m: the outer race grows into its fit.
     pub interference: Profile,
-    /// Further force on the outer race, N in the world.
-    pub weight: Vec3,
     /// Whether balls press outwards as they go round.
     pub centrifugal: bool,
 }
@@ -169,8 +167,6 @@ pub struct Course {
 pub struct Moment {
     /// s.
     pub time: f64,
-    /// Azimuth of ball 1, rad.
-    pub ball_phase: f64,
     pub state: HousedState,
 }
 
@@ -210,8 +206,8 @@ pub fn history(
         let turns = if course.centrifugal { course.shaft_speed.value(time) } else { 0.0 };
         problem.orbital_speed = cage * turns;
         let grown = Fit { radius: fit.radius + course.interference.value(time), ..*fit };
-        let state = search.solve(&problem, &grown, course.weight)?;
-        Ok(Moment { time, ball_phase: problem.ball_phase, state })
+        let state = search.solve(&problem, &grown, [0.0; 3])?;
+        Ok(Moment { time, state })
     };
     course.times.iter().map(at).collect()
 }

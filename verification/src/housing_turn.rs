@@ -84,7 +84,6 @@ pub fn equilibria(
             rotating_load: Some(turning.load.clone()),
             shaft_speed: Profile::ZERO,
             interference: Profile::ZERO,
-            weight: [0.0; 3],
             centrifugal: false,
         };
         for moment in history(search, &bearing, &housings::fit(turning.interference), &course)? {

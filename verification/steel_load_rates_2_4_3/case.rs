@@ -314,7 +314,6 @@ fn transition(context: &mut CaseContext) -> Result<(), CaseError> {
         rotating_load: None,
         shaft_speed: Profile::ZERO,
         interference: Profile::ZERO,
-        weight: [0.0; 3],
         centrifugal: false,
     };
     let moments = history(&mut search, &housings::bearing()?, &fit(0.0), &course)?;
