@@ -3,7 +3,7 @@
 //! One module per chapter of the source dissertation; chapters are pure laws on plain data.
 //! Imports run one way only:
 //! `kinematics, mesh, elements <- ch2 <- ch3 <- ch4 <- ch5 <- solver <- scene, output <- main`.
-//! `docs/equations.md` maps every equation to its item here and to its verification case.
+//! `docs/theory.md` maps every equation to its item here and to its verification case.
 #![forbid(unsafe_code)]
 // Indices are the notation of components, as in the equations.
 #![allow(clippy::needless_range_loop)]

@@ -53,7 +53,7 @@ pub struct QuasiStaticFit<'b> {
 
 /// All at one time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
+pub struct EquilibriumAt {
     /// s.
     pub time: f64,
     pub solution: AssemblySolution,
@@ -127,7 +127,7 @@ impl<'b> QuasiStaticProblem<'b> {
         &self,
         search: &mut WarmStartedSearch<'b>,
         t: f64,
-    ) -> Result<Moment, QuasiStaticError> {
+    ) -> Result<EquilibriumAt, QuasiStaticError> {
         self.solve(search, &self.at(t), t).map_err(|source| QuasiStaticError { time: t, source })
     }
 
@@ -140,7 +140,7 @@ impl<'b> QuasiStaticProblem<'b> {
         search: &mut WarmStartedSearch<'b>,
         still: &StaticAssembly<'b>,
         t: f64,
-    ) -> Result<Moment, StaticsError> {
+    ) -> Result<EquilibriumAt, StaticsError> {
         let before = search.contact_changes();
         let solution = search.solve(still)?;
         let mut residual = 0.0f64;
@@ -153,7 +153,7 @@ impl<'b> QuasiStaticProblem<'b> {
             residual = residual.max(part);
         }
         let contact_changes = search.contact_changes() - before;
-        Ok(Moment { time: t, solution, residual, contact_changes })
+        Ok(EquilibriumAt { time: t, solution, residual, contact_changes })
     }
 
     fn unbalanced(&self, found: &AssemblySolution, seat: usize, t: f64) -> Result<f64, BoreError> {
@@ -244,7 +244,7 @@ fn own_loads(assembly: &Assembly, body: &Body, t: f64) -> [f64; 5] {
 }
 
 /// A course on its way from row to row.
-pub struct Course<'b> {
+pub struct QuasiStaticSequence<'b> {
     pub problem: QuasiStaticProblem<'b>,
     search: WarmStartedSearch<'b>,
     /// Between rows, s.
@@ -252,7 +252,7 @@ pub struct Course<'b> {
     /// Equilibria so far; the first is at the start.
     pub found: u64,
     /// The latest one.
-    pub latest: Option<Moment>,
+    pub latest: Option<EquilibriumAt>,
     pub effort: Effort,
     /// How often each stage ran.
     pub ran: StageCounts,
@@ -270,7 +270,7 @@ pub struct Effort {
 
 /// What a course goes on from with the same bits.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct CourseCheckpoint {
+pub struct QuasiStaticCheckpoint {
     /// s.
     pub time: f64,
     pub found: u64,
@@ -280,12 +280,12 @@ pub struct CourseCheckpoint {
     pub nodes: Vec<usize>,
 }
 
-impl<'b> Course<'b> {
+impl<'b> QuasiStaticSequence<'b> {
     /// Before the first equilibrium; rows are `interval` (s) apart.
-    pub fn new(problem: QuasiStaticProblem<'b>, interval: f64) -> Course<'b> {
+    pub fn new(problem: QuasiStaticProblem<'b>, interval: f64) -> QuasiStaticSequence<'b> {
         let search = WarmStartedSearch::of(&problem.seats);
         let effort = Effort::default();
-        Course {
+        QuasiStaticSequence {
             problem,
             search,
             interval,
@@ -319,8 +319,8 @@ impl<'b> Course<'b> {
         Ok(())
     }
 
-    pub fn checkpoint(&self) -> CourseCheckpoint {
-        CourseCheckpoint {
+    pub fn checkpoint(&self) -> QuasiStaticCheckpoint {
+        QuasiStaticCheckpoint {
             time: self.time(),
             found: self.found,
             effort: self.effort,
@@ -333,7 +333,7 @@ impl<'b> Course<'b> {
     ///
     /// # Errors
     /// As [`WarmStartedSearch::recall`].
-    pub fn restore(&mut self, kept: &CourseCheckpoint) -> Result<(), BoreError> {
+    pub fn restore(&mut self, kept: &QuasiStaticCheckpoint) -> Result<(), BoreError> {
         (self.found, self.effort) = (kept.found, kept.effort);
         self.search.recall(&kept.memory)
     }

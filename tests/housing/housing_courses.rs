@@ -1,7 +1,9 @@
 //! Quasi-static courses of a bearing and its housing, and their lowest natural frequency.
 
 use super::housing_assembly::{fit, loads, search, solve};
-use crate::housed::{Course, HousedSearch, HousedState, OUTER, history, lists, moving};
+use crate::housed::{
+    HousedSearch, HousedState, OUTER, QuasiStaticSequence, history, lists, moving,
+};
 use crate::housing_common;
 
 use bearing_dynamics::assembly::loads::RotatingLoad;
@@ -17,9 +19,9 @@ use housing_common::*;
 use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-fn one_turn(points: usize) -> Course {
+fn one_turn(points: usize) -> QuasiStaticSequence {
     let speed = 50.0 / 60.0 * TAU;
-    Course {
+    QuasiStaticSequence {
         times: (0..=points).map(|i| 1.2 * i as f64 / points as f64).collect(),
         conditions: [0; 5].map(|_| Profile::ZERO),
         rotating_load: Some(RotatingLoad {

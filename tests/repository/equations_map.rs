@@ -1,4 +1,4 @@
-//! Keeps `docs/equations.md` true: each numbered equation of the dissertation has one row; the doc comments of the
+//! Keeps `docs/theory.md` true: each numbered equation of the dissertation has one row; the doc comments of the
 //! file that defines its item cite its number, or that of the equation that states the same; its cases exist.
 
 use std::fs;
@@ -34,7 +34,7 @@ fn in_backticks(text: &str) -> Vec<String> {
 }
 
 fn rows() -> Vec<Row> {
-    let page = read(&root().join("docs/equations.md"));
+    let page = read(&root().join("docs/theory.md"));
     let lines = page.lines().filter(|line| line.starts_with('|'));
     let cells = lines.map(|line| line.trim_matches('|').split('|').map(str::trim).collect());
     let rows = cells.filter(|cells: &Vec<&str>| cells[0] != "Equation" && cells[0] != "---");
@@ -106,7 +106,7 @@ fn the_home_of_an_equation_cites_its_number() {
 
 #[test]
 fn cases_of_equations_and_errata_exist() {
-    let errata = read(&root().join("docs/errata.md"));
+    let errata = read(&root().join("docs/theory.md"));
     let shown = errata.split("shown by `").skip(1).filter_map(|rest| rest.split('`').next());
     let mut cases: Vec<String> = shown.map(String::from).collect();
     assert!(!cases.is_empty());

@@ -12,7 +12,7 @@ use crate::check::Check;
 use crate::contact_picture::contact_picture;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::housed::{Course, history};
+use crate::housed::{QuasiStaticSequence, history};
 use crate::housings::{
     assumptions, bearing, condensed, fit, mesh, panel, search, solid, sum_of_loads, touched_part,
 };
@@ -80,7 +80,7 @@ struct Pictures {
     stress: Vec<(f64, String)>,
 }
 
-fn course(interference: f64) -> Course {
+fn course(interference: f64) -> QuasiStaticSequence {
     let load = Profile::Ramp { from: 0.0, to: -LOAD, start: RESTED, duration: LOADED - RESTED };
     // A clearance is there from the beginning, an interference grows.
     let grown = Profile::Ramp {
@@ -92,7 +92,7 @@ fn course(interference: f64) -> Course {
     let loaded = (0..=STEPS).map(|i| RESTED + (LOADED - RESTED) * i as f64 / STEPS as f64);
     let growing = (0..5).map(|i| GROWN * f64::from(i) / 4.0);
     let zero = Profile::ZERO;
-    Course {
+    QuasiStaticSequence {
         times: growing.chain(loaded).collect(),
         conditions: [zero.clone(), zero.clone(), load, zero.clone(), zero.clone()],
         rotating_load: None,

@@ -23,7 +23,7 @@ use crate::check::Check;
 use crate::contact_picture::contact_picture;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::housed::{Course, OUTER, history, moving};
+use crate::housed::{OUTER, QuasiStaticSequence, history, moving};
 use crate::housings::{
     BEARING, BORE_RADIUS, WIDTH, angles, assumptions, bearing, condensed, fit, mean, mesh, panel,
     radii, search, solid, sum_of_loads, touched_part,
@@ -98,7 +98,7 @@ fn turn(
     let solid = solid(&mesh)?;
     let bore = condensed(&mesh, &solid)?;
     let mut search = search(&bore);
-    let course = Course {
+    let course = QuasiStaticSequence {
         times: angles(POINTS).map(|angle| angle / LOAD_SPEED).collect(),
         conditions: [0; 5].map(|_| Profile::ZERO),
         rotating_load: Some(RotatingLoad {

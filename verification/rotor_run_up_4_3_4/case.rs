@@ -11,8 +11,8 @@ use crate::golden::GoldenTolerance;
 use crate::motion::RPM;
 use crate::oracles::run_up::{Peak, Support};
 use crate::rotor_run_up::{
-    Course, Done, RAMP_UNSTATED, TOP, Way, balls, followed, headed, on_pins, oracle, rotor, run_up,
-    straight, top,
+    Done, QuasiStaticSequence, RAMP_UNSTATED, TOP, Way, balls, followed, headed, on_pins, oracle,
+    rotor, run_up, straight, top,
 };
 
 mod sensitivity;
@@ -73,14 +73,19 @@ fn pinned() -> Result<Done, CaseError> {
 }
 
 /// Of one of [`RAMPS`]: its course, and where it ends, s.
-fn course((ramp, from, to): (f64, f64, f64)) -> (Course, f64) {
+fn course((ramp, from, to): (f64, f64, f64)) -> (QuasiStaticSequence, f64) {
     let course = if from > 0.0 { headed(ramp, from) } else { straight(ramp) };
     let end = course[course.len() - 1][0] - ramp * (1.0 - to / TOP);
     (course, end)
 }
 
 /// The program's and the oracle's.
-fn both(course: &Course, unbalance: &str, way: &Way, end: f64) -> Result<[Done; 2], CaseError> {
+fn both(
+    course: &QuasiStaticSequence,
+    unbalance: &str,
+    way: &Way,
+    end: f64,
+) -> Result<[Done; 2], CaseError> {
     let ours = run_up(rotor(course, unbalance, way)?, way, end)?;
     Ok([ours, followed(&oracle(course, unbalance, balls(0.0)), end)])
 }
@@ -278,7 +283,7 @@ fn forgotten(context: &mut CaseContext) -> Result<(), CaseError> {
 }
 
 /// Speeds of [`STEADY`] one after the other, from rest or with balls that roll at first.
-fn stairs(first: f64) -> Course {
+fn stairs(first: f64) -> QuasiStaticSequence {
     let mut course = vec![[0.0, first], [0.02, STEADY[0]], [SETTLES, STEADY[0]]];
     for speed in &STEADY[1..] {
         let last = course[course.len() - 1][0];
@@ -288,7 +293,7 @@ fn stairs(first: f64) -> Course {
 }
 
 /// Mean deflections at each of [`STEADY`], and their top.
-fn whirl(done: &Done, course: &Course) -> Result<(Vec<f64>, Peak), CaseError> {
+fn whirl(done: &Done, course: &QuasiStaticSequence) -> Result<(Vec<f64>, Peak), CaseError> {
     let ends = course[2..].iter().step_by(2).map(|[end, _]| *end);
     let means: Vec<f64> = ends.map(|end| done.mean(end - LOOKED_AT, end)).collect();
     let points: Vec<[f64; 2]> = STEADY.iter().zip(&means).map(|(x, y)| [*x, *y]).collect();

@@ -72,21 +72,25 @@ impl Rate {
 }
 
 /// How far the races have sunk under a load.
-struct Course {
+struct QuasiStaticSequence {
     times: Vec<f64>,
     /// m, downwards.
     outer: Vec<f64>,
     inner: Vec<f64>,
 }
 
-impl Course {
-    fn of(scene: &AssemblyScene) -> Result<Course, CaseError> {
+impl QuasiStaticSequence {
+    fn of(scene: &AssemblyScene) -> Result<QuasiStaticSequence, CaseError> {
         let mut columns = ran(scene, &["time", "outer_z", "inner_z"])?;
         let down = |column: &mut Vec<f64>| column.iter().map(|z| -z).collect();
         let [times, outer, inner] = &mut columns[..] else {
             return Err(CaseError::message("three columns"));
         };
-        Ok(Course { outer: down(outer), inner: down(inner), times: std::mem::take(times) })
+        Ok(QuasiStaticSequence {
+            outer: down(outer),
+            inner: down(inner),
+            times: std::mem::take(times),
+        })
     }
 
     /// Row nearest to a time.
@@ -126,8 +130,9 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     }
     context.assumption("three_rates", "The two rates beside the scene's own.", "0.1 and 2 s");
     let long = format!("end = \"{LONG} s\"");
-    let courses = [(0, END), (1, long.as_str()), (2, END)]
-        .map(|(rate, end)| RATES[rate].scene(&[(END, end)]).and_then(|scene| Course::of(&scene)));
+    let courses = [(0, END), (1, long.as_str()), (2, END)].map(|(rate, end)| {
+        RATES[rate].scene(&[(END, end)]).and_then(|scene| QuasiStaticSequence::of(&scene))
+    });
     let [fast, middle, slow] = courses;
     let courses = [fast?, middle?, slow?];
     let [outer, inner] = relaxed(&[])?;
@@ -142,7 +147,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 /// What the courses go to: the relaxed equilibrium of the same scene.
 fn equilibrium(
     context: &mut CaseContext,
-    long: &Course,
+    long: &QuasiStaticSequence,
     outer: f64,
     inner: f64,
 ) -> Result<(), CaseError> {
@@ -202,7 +207,7 @@ fn sampled(duration: f64) -> Vec<f64> {
 /// Each course by the oracle; and its points.
 fn creep(
     context: &mut CaseContext,
-    courses: &[Course; 3],
+    courses: &[QuasiStaticSequence; 3],
     outer: f64,
 ) -> Result<Vec<Vec<[f64; 2]>>, CaseError> {
     let on = OnBushing { mass: 0.0, stiffness: stiffness(1.0) };
@@ -244,7 +249,7 @@ fn creep(
                 .at_least(0.05, "an order, and a difference that a figure shows"),
         );
     }
-    let row = |((rate, course), exact): ((&Rate, &Course), &Vec<[f64; 2]>)| {
+    let row = |((rate, course), exact): ((&Rate, &QuasiStaticSequence), &Vec<[f64; 2]>)| {
         let mut row = vec![rate.text.to_string()];
         for t in [rate.duration, rate.duration + 1.0, 30.0] {
             row.push(format!("{:.2}", 100.0 * course.outer_at(t) / outer));
@@ -266,7 +271,7 @@ fn at_rest<K: Fn(Complex<f64>) -> Complex<f64>>(on: &OnBushing<K>) -> f64 {
 }
 
 /// When the three displacements have come together.
-fn together(context: &mut CaseContext, courses: &[Course; 3], outer: f64) {
+fn together(context: &mut CaseContext, courses: &[QuasiStaticSequence; 3], outer: f64) {
     let rows = courses.iter().map(|course| course.times.len()).min().unwrap_or(0);
     let apart = |row: usize| {
         let here = courses.each_ref().map(|course| course.outer[row]);
@@ -314,7 +319,7 @@ fn together(context: &mut CaseContext, courses: &[Course; 3], outer: f64) {
 }
 
 /// What does not relax knows no rate: the same scene with its outer race fixed.
-fn fixed(context: &mut CaseContext, courses: &[Course; 3]) -> Result<(), CaseError> {
+fn fixed(context: &mut CaseContext, courses: &[QuasiStaticSequence; 3]) -> Result<(), CaseError> {
     let cut = CREEP_ON_RUBBER
         .find("[spring.mount]")
         .zip(CREEP_ON_RUBBER.find("[traction]"))
@@ -380,7 +385,7 @@ fn shares(context: &mut CaseContext) -> Result<(), CaseError> {
                 ("output_interval = \"50 ms\"", "output_interval = \"0.1 ms\""),
             ],
         )?;
-        let course = Course::of(&scene)?;
+        let course = QuasiStaticSequence::of(&scene)?;
         let [whole, _] = relaxed(&[swap])?;
         let balls = 8.0 * 4.0 / 3.0 * std::f64::consts::PI * TABLE_3_5.ball_radius.powi(3) * 7850.0;
         let assembly = scene.assembly()?;
@@ -417,7 +422,7 @@ fn shares(context: &mut CaseContext) -> Result<(), CaseError> {
             .into_iter()
             .map(|rate| {
                 let end = format!("end = \"{} s\"", rate.duration);
-                let course = Course::of(&rate.scene(&[swap, (END, end.as_str())])?)?;
+                let course = QuasiStaticSequence::of(&rate.scene(&[swap, (END, end.as_str())])?)?;
                 Ok(course.outer_at(rate.duration))
             })
             .collect::<Result<_, CaseError>>()?;
@@ -477,7 +482,7 @@ fn shares(context: &mut CaseContext) -> Result<(), CaseError> {
 
 fn figure(
     context: &mut CaseContext,
-    courses: &[Course; 3],
+    courses: &[QuasiStaticSequence; 3],
     exact: &[Vec<[f64; 2]>],
     outer: f64,
 ) -> Result<(), CaseError> {

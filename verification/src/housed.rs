@@ -147,7 +147,7 @@ pub fn moving([inner, outer]: [Inertia; 2], free: [bool; 5]) -> Vec<MovingBody> 
 
 /// What changes over time. Balls go round at the speed of the cage in pure rolling.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct QuasiStaticSequence {
     /// Ascending, s.
     pub times: Vec<f64>,
     /// On the inner race, instead of the bearing's conditions: loads stay loads and displacements displacements.
@@ -178,7 +178,7 @@ pub fn history(
     search: &mut HousedSearch,
     bearing: &StaticProblem,
     fit: &Fit,
-    course: &Course,
+    course: &QuasiStaticSequence,
 ) -> Result<Vec<Moment>, StaticsError> {
     let geometry = &bearing.geometry;
     let cage = ratios(

@@ -99,7 +99,10 @@ impl Shaft {
 
     pub fn quasi_static<'b>(&'b self, bores: &'b [CondensedBore]) -> Result<Parts<'b>, CaseError> {
         let models = self.housings.iter().map(|housing| &housing.setup.model).collect();
-        Ok(Parts::Course(Box::new(CourseParts { problem: self.course(bores)?, models })))
+        Ok(Parts::QuasiStaticSequence(Box::new(CourseParts {
+            problem: self.course(bores)?,
+            models,
+        })))
     }
 
     pub fn reduced(&self) -> Result<Parts<'static>, CaseError> {

@@ -14,7 +14,7 @@ use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::model::SolidModel;
 
 use crate::case::CaseError;
-use crate::housed::{Course, HousedSearch, HousedState, Moment, history};
+use crate::housed::{HousedSearch, HousedState, Moment, QuasiStaticSequence, history};
 use crate::housings::{self, BORE_RADIUS, WIDTH, angles};
 use crate::motion;
 use crate::pareto::Stopwatch;
@@ -78,7 +78,7 @@ pub fn equilibria(
     let bearing = housings::bearing()?;
     let mut moments = Vec::new();
     for &time in times {
-        let course = Course {
+        let course = QuasiStaticSequence {
             times: vec![time],
             conditions: [0; 5].map(|_| Profile::ZERO),
             rotating_load: Some(turning.load.clone()),

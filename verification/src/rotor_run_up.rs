@@ -39,15 +39,15 @@ pub const CAGE: &str = "[bearing.cage]\npocket_radius = \"6.0 mm\"\ninner_radius
                     mass = \"20 g\"\nguidance = \"outer-race\"\ncontact = { law = \"penalty\", stiffness = \"1e6 N/m\" }\nfriction = 0\n\n[bearing.left]";
 
 /// Speed over time, s and rpm: straight between these, then it stays.
-pub type Course = Vec<[f64; 2]>;
+pub type QuasiStaticSequence = Vec<[f64; 2]>;
 
 /// From rest within this time, s.
-pub fn straight(ramp: f64) -> Course {
+pub fn straight(ramp: f64) -> QuasiStaticSequence {
     vec![[0.0, 0.0], [ramp, TOP]]
 }
 
 /// The same rate, but from rest to the first speed, rpm, at once.
-pub fn headed(ramp: f64, first: f64) -> Course {
+pub fn headed(ramp: f64, first: f64) -> QuasiStaticSequence {
     const HEAD: f64 = 0.03;
     vec![[0.0, 0.0], [HEAD, first], [HEAD + ramp * (1.0 - first / TOP), TOP]]
 }
@@ -64,7 +64,11 @@ pub struct Way<'w> {
 }
 
 /// The shipped scene with another unbalance, kg·m, course, and words.
-pub fn rotor(course: &Course, unbalance: &str, way: &Way) -> Result<Assembly, CaseError> {
+pub fn rotor(
+    course: &QuasiStaticSequence,
+    unbalance: &str,
+    way: &Way,
+) -> Result<Assembly, CaseError> {
     let points = course.iter().map(|[time, speed]| format!("[\"{time} s\", \"{speed} rpm\"]"));
     let speed = format!("speed = {{ table = [{}] }}", points.collect::<Vec<_>>().join(", "));
     let size = format!("size = \"{unbalance} kg m\"");
@@ -211,7 +215,7 @@ fn astray(simulation: &Simulation) -> f64 {
 }
 
 /// The same rotor for the oracle.
-pub fn oracle(course: &Course, unbalance: &str, support: Support) -> RunUp {
+pub fn oracle(course: &QuasiStaticSequence, unbalance: &str, support: Support) -> RunUp {
     RunUp {
         length: 0.4,
         radius: 15e-3,

@@ -18,7 +18,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::housed::{Course, HousedState, history};
+use crate::housed::{HousedState, QuasiStaticSequence, history};
 use crate::housing_turn;
 use crate::housings::{self, BORE_RADIUS, assumptions, condensed, fit, mesh, search, solid};
 use crate::motion;
@@ -308,7 +308,7 @@ fn transition(context: &mut CaseContext) -> Result<(), CaseError> {
     let mut search = search(&bore);
     let zero = Profile::ZERO;
     let ramp = Profile::Ramp { from: 0.0, to: -LOAD, start: 0.0, duration: 1.0 };
-    let course = Course {
+    let course = QuasiStaticSequence {
         times: (0..=STEPS).map(|i| i as f64 / STEPS as f64).collect(),
         conditions: [zero.clone(), zero.clone(), ramp, zero.clone(), zero.clone()],
         rotating_load: None,

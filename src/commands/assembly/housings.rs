@@ -8,7 +8,7 @@ use bearing_dynamics::assembly::static_lists::StaticAssembly;
 use bearing_dynamics::equilibrium::exact_gap_iteration::solve_with_true_distances;
 use bearing_dynamics::equilibrium::initial::{conditions, given_speed, static_assembly};
 use bearing_dynamics::equilibrium::quasi_static_sequence::{
-    Moment, QuasiStaticFit, QuasiStaticProblem,
+    EquilibriumAt, QuasiStaticFit, QuasiStaticProblem,
 };
 use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, Condition, StaticOptions, solve_assembly,
@@ -138,7 +138,7 @@ pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiS
 /// What is in equilibrium at t = 0, and where.
 pub struct Equilibrium<'b> {
     pub still: StaticAssembly<'b>,
-    pub moment: Moment,
+    pub moment: EquilibriumAt,
     /// Of races in bores, with the contact there.
     pub in_bores: Option<(QuasiStaticProblem<'b>, WarmStartedSearch<'b>)>,
 }
@@ -152,7 +152,7 @@ pub fn equilibrium<'b>(
     let mut still: StaticAssembly<'b> = super::still(lists)?;
     if seats.is_empty() {
         let solution = solve_assembly(&still, near, &StaticOptions::default())?;
-        let moment = Moment { time: 0.0, residual: 0.0, contact_changes: 0, solution };
+        let moment = EquilibriumAt { time: 0.0, residual: 0.0, contact_changes: 0, solution };
         return Ok(Equilibrium { still, moment, in_bores: None });
     }
     seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));

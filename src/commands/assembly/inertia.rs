@@ -3,7 +3,7 @@
 use super::Fallible;
 use super::housing::Housing;
 use super::modes::natural_shapes;
-use bearing_dynamics::equilibrium::quasi_static_sequence::{Moment, QuasiStaticProblem};
+use bearing_dynamics::equilibrium::quasi_static_sequence::{EquilibriumAt, QuasiStaticProblem};
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::results::quantity;
@@ -33,7 +33,7 @@ impl FrequencyRatio {
         course: &QuasiStaticProblem,
         housings: &[Housing],
         search: &WarmStartedSearch,
-        found: &Moment,
+        found: &EquilibriumAt,
     ) -> Fallible<Option<FrequencyRatio>> {
         let all = excitations(scene).into_iter();
         let Some(fastest) = all.max_by(|a, b| a.frequency.total_cmp(&b.frequency)) else {

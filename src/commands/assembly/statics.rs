@@ -11,7 +11,7 @@ use crate::commands::echo::{frequencies, hertz, sections};
 use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, pictures, record, say, table};
 use bearing_dynamics::assembly::static_lists::StaticAssembly;
-use bearing_dynamics::equilibrium::quasi_static_sequence::Moment;
+use bearing_dynamics::equilibrium::quasi_static_sequence::EquilibriumAt;
 use bearing_dynamics::equilibrium::statics::{StaticProblem, StaticSolution};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::assembly_results::{Solved, readable, write};
@@ -44,7 +44,7 @@ pub struct Found<'s> {
     names: Vec<&'s str>,
     assembly: StaticAssembly<'static>,
     /// Of several as people read it.
-    moment: Moment,
+    moment: EquilibriumAt,
     /// The same as that of a bearing by itself, where there is only one.
     of_one: Option<(StaticProblem, StaticSolution)>,
     warnings: Vec<Warning>,
@@ -169,7 +169,7 @@ impl Found<'_> {
             }
         };
         if !self.settled.is_empty() {
-            let Moment { contact_changes, residual, .. } = self.moment;
+            let EquilibriumAt { contact_changes, residual, .. } = self.moment;
             text += &format!(
                 "{} iterations, {contact_changes} changes of contact, unbalanced part of the load {residual:.1e}\n",
                 solution.iterations
@@ -256,7 +256,7 @@ impl Settled {
     fn record(
         &self,
         bore: &CondensedBore,
-        moment: &Moment,
+        moment: &EquilibriumAt,
         record: &mut RunRecord,
     ) -> Fallible<()> {
         let Settled { housing, displacement, .. } = self;

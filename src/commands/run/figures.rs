@@ -1,6 +1,6 @@
 //! The few numbers of a run that `bearing run` ends with.
 
-use bearing_dynamics::equilibrium::quasi_static_sequence::Course;
+use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::numeric::clock::display_time;
 use bearing_dynamics::output::recorder::seat::prefix;
@@ -27,7 +27,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
                 lines.push((format!("{}outer race, farthest", of.replace('_', " ")), said));
             }
         }
-        Motion::Course(course) => {
+        Motion::QuasiStaticSequence(course) => {
             let bearings = &course.problem.assembly.bearings;
             bearings.iter().for_each(|of| races_apart(table, &of.prefix(), &mut lines));
         }
@@ -40,7 +40,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             let seats = &simulation.system.assembly.seats;
             lines.extend(seats.iter().map(|seat| of_bore(table, &seat.label)));
         }
-        Motion::Course(course) => {
+        Motion::QuasiStaticSequence(course) => {
             lines.extend(course.problem.seats.iter().map(|seat| of_bore(table, &seat.name)));
         }
         Motion::Solid(_) => {}
@@ -75,7 +75,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             said += &format!("{of_bearing} of the bearing");
             ("windows".into(), said)
         }
-        Motion::Course(course) => ("equilibria".into(), effort(course, seconds)),
+        Motion::QuasiStaticSequence(course) => ("equilibria".into(), effort(course, seconds)),
         Motion::Rubber(moving) => {
             let (iterations, factorisations) = moving.solid.work();
             let said = format!(
@@ -132,7 +132,7 @@ fn largest(table: &RunTable, name: &str) -> f64 {
     table.all(name).unwrap_or_default().iter().fold(0.0f64, |a, b| a.max(b.abs()))
 }
 
-fn effort(course: &Course, seconds: f64) -> String {
+fn effort(course: &QuasiStaticSequence, seconds: f64) -> String {
     let effort = &course.effort;
     format!(
         "{} in {seconds:.2} s, {} iterations, {} changes of contact, unbalanced part of the load up to \

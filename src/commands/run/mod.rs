@@ -165,9 +165,10 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
             });
             let kept = match session.motion {
                 Motion::Bearing(_) => "before that step",
-                Motion::Solid(_) | Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_) => {
-                    "at the last row"
-                }
+                Motion::Solid(_)
+                | Motion::Housed(_)
+                | Motion::QuasiStaticSequence(_)
+                | Motion::Rubber(_) => "at the last row",
             };
             Err(format!("{error}{too_long}; the rows so far and the state {kept} are in {out}")
                 .into())
@@ -242,7 +243,7 @@ fn at_once(session: &Session) -> u64 {
     let elements = |solid: &ExplicitSolid| solid.model.problem.elements.len().max(1) as u64;
     match &session.motion {
         Motion::Bearing(_) => STEPS_AT_ONCE,
-        Motion::Course(_) | Motion::Rubber(_) => 1,
+        Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => 1,
         Motion::Solid(moving) => (ELEMENTS_AT_ONCE / elements(&moving.solid)).max(1),
         Motion::Housed(housed) => {
             let in_window = |part: &SteppedSolid| elements(&part.solid) * part.steps as u64;

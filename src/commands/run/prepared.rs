@@ -71,7 +71,7 @@ pub(super) enum Way {
     Explicit,
     Reduced(Box<Shapes>),
     /// Through equilibria; and the wall time that condensing took, s.
-    Course(Vec<CondensedBore>, f64),
+    QuasiStaticSequence(Vec<CondensedBore>, f64),
 }
 
 /// A solid of a scene and its mesh.
@@ -142,7 +142,7 @@ impl<'s> Prepared<'s> {
             Some(HousingMethod::QuasiStatic) => {
                 let start = Instant::now();
                 let bores = housings::condensed(&housings)?;
-                Way::Course(bores, start.elapsed().as_secs_f64())
+                Way::QuasiStaticSequence(bores, start.elapsed().as_secs_f64())
             }
         };
         let mut assembly = Box::new(match &way {
@@ -171,10 +171,15 @@ impl<'s> Prepared<'s> {
                 let parts = housings::explicit(lists.scene, assembly, housings, elements, threads)?;
                 Parts::Housed(Box::new(parts))
             }
-            Prepared::Bearings { assembly, housings, way: Way::Course(bores, _), .. } => {
+            Prepared::Bearings {
+                assembly,
+                housings,
+                way: Way::QuasiStaticSequence(bores, _),
+                ..
+            } => {
                 let problem = housings::course((**assembly).clone(), housings, bores);
                 let models = housings.iter().map(|housing| &housing.setup.model).collect();
-                Parts::Course(Box::new(CourseParts { problem, models }))
+                Parts::QuasiStaticSequence(Box::new(CourseParts { problem, models }))
             }
             Prepared::Bearings { assembly, .. } => Parts::from((**assembly).clone()),
             Prepared::Solid { steps: (method, stepping), mesh, .. } => Parts::Solid(SolidParts {
@@ -201,7 +206,7 @@ impl<'s> Prepared<'s> {
                         request.options.start = Start::Equilibrium;
                         planned(request, settings, assembly, kept)
                     }
-                    Way::Explicit | Way::Course(..) => (request, None),
+                    Way::Explicit | Way::QuasiStaticSequence(..) => (request, None),
                 }
             }
             Prepared::Solid { settings, .. } | Prepared::Rubber { settings, .. } => {
@@ -311,7 +316,7 @@ impl<'s> Prepared<'s> {
     /// Wall times of what was done before the steps, s.
     pub fn seconds(&self) -> Vec<(String, f64)> {
         match self {
-            Prepared::Bearings { way: Way::Course(_, condense), .. } => {
+            Prepared::Bearings { way: Way::QuasiStaticSequence(_, condense), .. } => {
                 vec![("condense".into(), *condense)]
             }
             Prepared::Bearings { way: Way::Reduced(shapes), .. } => {
@@ -341,7 +346,7 @@ impl<'s> Prepared<'s> {
             Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, way } => {
                 let (scene, choice) = (lists.scene, self.told(choice));
                 let planned = match way {
-                    Way::Course(..) => plan::of_course(lists, housings, settings)?,
+                    Way::QuasiStaticSequence(..) => plan::of_course(lists, housings, settings)?,
                     _ => {
                         let elements = (&bushings[..], &shafts[..]);
                         plan::stages(scene, (housings, elements), assembly, request, choice)
@@ -350,7 +355,9 @@ impl<'s> Prepared<'s> {
                 let mut record = assembly::record(lists, planned, seconds)?;
                 record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));
                 record.ran.solids = match way {
-                    Way::Course(bores, _) => bores.iter().map(|bore| bore.ran).collect(),
+                    Way::QuasiStaticSequence(bores, _) => {
+                        bores.iter().map(|bore| bore.ran).collect()
+                    }
                     Way::Reduced(shapes) => shapes.ran.clone(),
                     Way::Rigid | Way::Explicit => Vec::new(),
                 };

@@ -6,7 +6,7 @@ use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
 use crate::commands::say;
 use crate::commands::warnings::{aliased, of_run};
-use bearing_dynamics::equilibrium::quasi_static_sequence::Course;
+use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::motion::foretell::Choice;
 use bearing_dynamics::numeric::profile::Profile;
@@ -112,7 +112,7 @@ pub(super) fn write_results(
     match &session.motion {
         Motion::Solid(moving) => record.threads = moving.threads,
         Motion::Housed(housed) => record.threads = housed.threads(),
-        Motion::Bearing(_) | Motion::Course(_) | Motion::Rubber(_) => {}
+        Motion::Bearing(_) | Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => {}
     }
     let (stepping, integrator) = (request.options.stepping, request.options.integrator);
     let report = RunReport {
@@ -218,7 +218,7 @@ fn housing_results(
     for (number, housing) in housings.iter().enumerate() {
         let mut sections = Vec::new();
         match way {
-            Way::Course(bores, _) => {
+            Way::QuasiStaticSequence(bores, _) => {
                 sections.extend(equilibrium(&bores[number], housing, session, number)?);
             }
             Way::Reduced(shapes) => {
@@ -239,7 +239,9 @@ fn housing_results(
             let stress = stresses(model, &displacement);
             sections.extend(field_sections(&housing.built, &displacement, &stress)?);
             let own = match way {
-                Way::Course(..) => of_solid::of_equilibrium(model, &displacement, &stress),
+                Way::QuasiStaticSequence(..) => {
+                    of_solid::of_equilibrium(model, &displacement, &stress)
+                }
                 _ => of_solid::of_motion(model, &stress),
             };
             said.warnings.extend(own.into_iter().map(|of| of.named(&housing.before())));
@@ -257,7 +259,7 @@ fn housing_results(
     if !of_all.is_empty() {
         said.sections.push(("housings".into(), Value::Object(of_all)));
     }
-    if let Motion::Course(course) = &session.motion {
+    if let Motion::QuasiStaticSequence(course) = &session.motion {
         inertia_results(scene, course, housings, said)?;
     }
     Ok(())
@@ -281,7 +283,7 @@ fn equilibrium(
     session: &Session,
     number: usize,
 ) -> Fallible<Option<(String, Value)>> {
-    let Motion::Course(course) = &session.motion else { return Ok(None) };
+    let Motion::QuasiStaticSequence(course) = &session.motion else { return Ok(None) };
     let Some(moment) = &course.latest else { return Ok(None) };
     let (state, displacement) = (&moment.solution.seats[number], course.displacement(number));
     let mut section = equilibrium_section(&housing.setup, bore, state, &displacement)?;
@@ -292,7 +294,7 @@ fn equilibrium(
 /// What leaving out inertia changes, about the latest equilibrium. Equilibria that were found are kept, whatever becomes of it.
 fn inertia_results(
     scene: &AssemblyScene,
-    course: &Course,
+    course: &QuasiStaticSequence,
     housings: &[Housing],
     said: &mut Said,
 ) -> Fallible<()> {

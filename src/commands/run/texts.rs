@@ -34,7 +34,10 @@ pub(super) fn announcement(
         (Motion::Solid(moving), _) => of_solid(&moving.solid, clock),
         (Motion::Rubber(moving), _) => of_rubber(moving, clock),
         (Motion::Housed(housed), _) => of_housed(housed, clock, request),
-        (Motion::Course(_), Prepared::Bearings { way: Way::Course(bores, seconds), .. }) => {
+        (
+            Motion::QuasiStaticSequence(_),
+            Prepared::Bearings { way: Way::QuasiStaticSequence(bores, seconds), .. },
+        ) => {
             let unknowns: usize = bores.iter().map(|bore| bore.sizes.unknowns).sum();
             let kept: usize = bores.iter().map(|bore| bore.sizes.kept).sum();
             let count = clock.last.unwrap_or(0);
@@ -45,7 +48,7 @@ pub(super) fn announcement(
                 clock.interval
             )
         }
-        (Motion::Course(_), _) => String::new(),
+        (Motion::QuasiStaticSequence(_), _) => String::new(),
     };
     if let Some(file) = kept {
         let (time, name) = (rounded(file.time), step_name(session));
@@ -210,7 +213,7 @@ fn step_name(session: &Session) -> &'static str {
     match session.motion {
         Motion::Bearing(_) | Motion::Solid(_) => "step",
         Motion::Housed(_) => "window",
-        Motion::Course(_) => "equilibrium",
+        Motion::QuasiStaticSequence(_) => "equilibrium",
         Motion::Rubber(_) => "row",
     }
 }
@@ -221,7 +224,7 @@ pub(super) fn place(session: &Session) -> String {
     let counted = match session.motion {
         Motion::Bearing(_) | Motion::Solid(_) => "steps",
         Motion::Housed(_) => "windows",
-        Motion::Course(_) => "equilibria",
+        Motion::QuasiStaticSequence(_) => "equilibria",
         Motion::Rubber(_) => "rows",
     };
     format!("t = {time} s of {} s, after {done} {counted}", session.clock.end)
@@ -232,7 +235,7 @@ pub(super) fn progress(session: &Session) -> String {
     let (time, end) = (session.motion.time(), session.clock.end);
     let name = step_name(session);
     match (&session.motion, session.clock.last) {
-        (Motion::Course(_) | Motion::Rubber(_), Some(all)) => {
+        (Motion::QuasiStaticSequence(_) | Motion::Rubber(_), Some(all)) => {
             format!("{name} {} of {all}", session.motion.done())
         }
         (Motion::Bearing(simulation), _) => {

@@ -31,12 +31,14 @@ pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<Bore
     match motion {
         Motion::Solid(_) | Motion::Rubber(_) => Vec::new(),
         Motion::Bearing(simulation) => seat_nodes(&simulation.system, solid),
-        Motion::Course(course) => match (&course.latest, course.problem.seats.get(solid)) {
-            (Some(moment), Some(seat)) => {
-                condensed_nodes(model, seat.bore, &moment.solution.seats[solid])
+        Motion::QuasiStaticSequence(course) => {
+            match (&course.latest, course.problem.seats.get(solid)) {
+                (Some(moment), Some(seat)) => {
+                    condensed_nodes(model, seat.bore, &moment.solution.seats[solid])
+                }
+                _ => Vec::new(),
             }
-            _ => Vec::new(),
-        },
+        }
         Motion::Housed(housed) => {
             let state = |(node, penalty, force): (ContactNode, Penalty, Vec3)| {
                 let load = dot(force, force).sqrt();

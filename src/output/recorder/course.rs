@@ -3,7 +3,7 @@
 use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
 use crate::assembly::mount::Mount;
-use crate::equilibrium::quasi_static_sequence::{Course, QuasiStaticProblem};
+use crate::equilibrium::quasi_static_sequence::{QuasiStaticProblem, QuasiStaticSequence};
 use crate::output::series::Column;
 
 /// Of the bearings, the bodies besides them, and the housings; with the loads of balls or without.
@@ -62,7 +62,7 @@ fn place([x, y, z, tilt_y, tilt_z]: [f64; 5]) -> [f64; 5] {
 
 impl Recorder {
     /// Adds a row of the latest equilibrium, in the order of [`columns`].
-    pub(in crate::output) fn record_equilibrium(&mut self, course: &Course) {
+    pub(in crate::output) fn record_equilibrium(&mut self, course: &QuasiStaticSequence) {
         let (Some(moment), problem) = (&course.latest, &course.problem) else { return };
         let found = &moment.solution;
         let full = self.values.len() + self.columns.len();

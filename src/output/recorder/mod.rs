@@ -48,7 +48,7 @@ impl Recorder {
                 bearing = Some(of_bearing(&parts.assembly));
                 columns.extend(seat::explicit_columns(parts));
             }
-            Parts::Course(parts) => {
+            Parts::QuasiStaticSequence(parts) => {
                 let with_loads = asked.contains(&ChannelGroup::Loads);
                 columns.extend(course::columns(&parts.problem, with_loads));
             }

@@ -51,7 +51,7 @@ pub enum SessionError {
     #[error(transparent)]
     Exchange(#[from] ExchangeError),
     #[error(transparent)]
-    Course(#[from] QuasiStaticError),
+    QuasiStaticSequence(#[from] QuasiStaticError),
     #[error(transparent)]
     Bore(#[from] BoreError),
     #[error(transparent)]
@@ -139,7 +139,7 @@ impl<'p> Session<'p> {
         if let Motion::Solid(moving) = &mut session.motion {
             session.watch.first = moving.solid.ledger().balance();
         }
-        if !matches!(session.motion, Motion::Course(_)) {
+        if !matches!(session.motion, Motion::QuasiStaticSequence(_)) {
             session.record(false)?;
             session.keep();
         }
@@ -286,7 +286,7 @@ impl<'p> Session<'p> {
                 recorder.record_solid(&mut moving.solid, watch, *energy_limit)?;
             }
             Motion::Housed(housed) => recorder.record_housed(housed, watch, *energy_limit)?,
-            Motion::Course(course) => recorder.record_equilibrium(course),
+            Motion::QuasiStaticSequence(course) => recorder.record_equilibrium(course),
             Motion::Rubber(moving) => recorder.record_rubber(&moving.solid)?,
         }
         self.clock.count_row(self.motion.time());
@@ -316,8 +316,10 @@ impl<'p> Session<'p> {
     /// What a later run goes on from: the last sound state of a run that is complete or has failed, and of
     /// those whose state is that of their rows; the present one of a run under way.
     pub fn resumable(&mut self) -> Sound {
-        let by_rows =
-            matches!(self.motion, Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_));
+        let by_rows = matches!(
+            self.motion,
+            Motion::Housed(_) | Motion::QuasiStaticSequence(_) | Motion::Rubber(_)
+        );
         if by_rows || self.failed || self.status == Status::Complete {
             let ran = self.with_before(&self.kept_ran.0, &self.kept_ran.1);
             return Sound { ran, ..self.sound.clone() };
@@ -358,7 +360,7 @@ impl<'p> Session<'p> {
             solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect()
         };
         match &self.motion {
-            Motion::Course(course) => course.displacement(solid),
+            Motion::QuasiStaticSequence(course) => course.displacement(solid),
             Motion::Rubber(moving) if solid == 0 => moving.solid.displacement().to_vec(),
             motion => motion.solids().get(solid).map_or_else(Vec::new, of),
         }

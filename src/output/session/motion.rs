@@ -6,7 +6,9 @@ use super::rubber::{MovingRubber, RubberParts};
 use crate::assembly::lists::Assembly;
 use crate::assembly::loads::DynamicProblem;
 use crate::assembly::plan::counts::{Counts, StageCounts};
-use crate::equilibrium::quasi_static_sequence::{Course, CourseCheckpoint, QuasiStaticProblem};
+use crate::equilibrium::quasi_static_sequence::{
+    QuasiStaticCheckpoint, QuasiStaticProblem, QuasiStaticSequence,
+};
 use crate::motion::bonded_bushing::BondedPart;
 use crate::motion::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::motion::clocked;
@@ -29,7 +31,7 @@ pub enum Parts<'p> {
     Bearing(Box<Assembly>),
     Solid(SolidParts<'p>),
     Housed(Box<HousedParts<'p>>),
-    Course(Box<CourseParts<'p>>),
+    QuasiStaticSequence(Box<CourseParts<'p>>),
     Rubber(RubberParts<'p>),
 }
 
@@ -96,7 +98,7 @@ pub enum Motion<'p> {
     Bearing(Box<Simulation>),
     Solid(Box<MovingSolid>),
     Housed(Box<Exchange<'p>>),
-    Course(Box<Course<'p>>),
+    QuasiStaticSequence(Box<QuasiStaticSequence<'p>>),
     Rubber(Box<MovingRubber<'p>>),
 }
 
@@ -115,7 +117,7 @@ impl Motion<'_> {
                 StageCounts { solids: vec![moving.solid.ran], ..StageCounts::default() }
             }
             Motion::Housed(housed) => housed.ran(),
-            Motion::Course(course) => course.ran.clone(),
+            Motion::QuasiStaticSequence(course) => course.ran.clone(),
             Motion::Rubber(moving) => {
                 StageCounts { solids: vec![*moving.solid.ran()], ..StageCounts::default() }
             }
@@ -136,7 +138,7 @@ impl Motion<'_> {
             Motion::Bearing(simulation) => simulation.system.ran.clear(),
             Motion::Solid(moving) => moving.solid.ran = Counts::default(),
             Motion::Housed(housed) => housed.forget_ran(),
-            Motion::Course(course) => course.ran.clear(),
+            Motion::QuasiStaticSequence(course) => course.ran.clear(),
             Motion::Rubber(moving) => moving.solid.forget_ran(),
         }
     }
@@ -148,7 +150,7 @@ pub enum Checkpoint {
     Bearing(Box<BearingCheckpoint>),
     Solid(Box<SolidCheckpoint>, SolidStepLimit),
     Housed(Box<ExchangeCheckpoint>, Windows),
-    Course(CourseCheckpoint),
+    QuasiStaticSequence(QuasiStaticCheckpoint),
     /// And the rows behind the first.
     Rubber(Box<RubberCheckpoint>, u64),
 }
@@ -179,10 +181,10 @@ impl<'p> Motion<'p> {
                 let clock = Clock { step, steps_per_row, ..Clock::default() };
                 (Motion::Housed(Box::new(housed)), clock)
             }
-            Parts::Course(parts) => {
-                let course = Course::new(parts.problem, interval);
+            Parts::QuasiStaticSequence(parts) => {
+                let course = QuasiStaticSequence::new(parts.problem, interval);
                 let clock = Clock { step: interval, steps_per_row: 1, ..Clock::default() };
-                (Motion::Course(Box::new(course)), clock)
+                (Motion::QuasiStaticSequence(Box::new(course)), clock)
             }
             Parts::Rubber(parts) => {
                 let moving = parts.started(interval)?;
@@ -226,10 +228,10 @@ impl<'p> Motion<'p> {
                 housed.share(threads);
                 Motion::Housed(Box::new(housed))
             }
-            (Parts::Course(parts), Checkpoint::Course(kept)) => {
-                let mut course = Course::new(parts.problem, clock.interval);
+            (Parts::QuasiStaticSequence(parts), Checkpoint::QuasiStaticSequence(kept)) => {
+                let mut course = QuasiStaticSequence::new(parts.problem, clock.interval);
                 course.restore(kept)?;
-                Motion::Course(Box::new(course))
+                Motion::QuasiStaticSequence(Box::new(course))
             }
             (Parts::Rubber(parts), Checkpoint::Rubber(kept, rows)) => {
                 let mut moving = parts.at_rest(clock.interval)?;
@@ -250,14 +252,14 @@ impl<'p> Motion<'p> {
             Motion::Housed(_) => {
                 Some(whole_number(clock.end, clock.interval) * clock.steps_per_row)
             }
-            Motion::Course(_) => Some(whole_number(clock.end, clock.interval) + 1),
+            Motion::QuasiStaticSequence(_) => Some(whole_number(clock.end, clock.interval) + 1),
         }
     }
 
     /// What moves or stands besides solids by themselves.
     pub fn assembly(&self) -> Option<&Assembly> {
         match self {
-            Motion::Course(course) => Some(&course.problem.assembly),
+            Motion::QuasiStaticSequence(course) => Some(&course.problem.assembly),
             motion => motion.bearing().map(|simulation| &simulation.system.assembly),
         }
     }
@@ -267,7 +269,7 @@ impl<'p> Motion<'p> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
             Motion::Housed(housed) => Some(&housed.simulation),
-            Motion::Solid(_) | Motion::Course(_) | Motion::Rubber(_) => None,
+            Motion::Solid(_) | Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => None,
         }
     }
 
@@ -275,7 +277,7 @@ impl<'p> Motion<'p> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
             Motion::Housed(housed) => Some(&mut housed.simulation),
-            Motion::Solid(_) | Motion::Course(_) | Motion::Rubber(_) => None,
+            Motion::Solid(_) | Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => None,
         }
     }
 
@@ -289,7 +291,7 @@ impl<'p> Motion<'p> {
         match self {
             Motion::Solid(moving) => vec![&moving.solid],
             Motion::Housed(housed) => housed.solids.iter().map(|part| &part.solid).collect(),
-            Motion::Bearing(_) | Motion::Course(_) | Motion::Rubber(_) => Vec::new(),
+            Motion::Bearing(_) | Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => Vec::new(),
         }
     }
 
@@ -299,7 +301,7 @@ impl<'p> Motion<'p> {
             Motion::Bearing(simulation) => simulation.time,
             Motion::Solid(moving) => moving.solid.time,
             Motion::Housed(housed) => housed.time(),
-            Motion::Course(course) => course.time(),
+            Motion::QuasiStaticSequence(course) => course.time(),
             Motion::Rubber(moving) => moving.solid.time(),
         }
     }
@@ -310,7 +312,7 @@ impl<'p> Motion<'p> {
             Motion::Bearing(simulation) => simulation.steps,
             Motion::Solid(moving) => moving.solid.steps,
             Motion::Housed(housed) => housed.exchanges,
-            Motion::Course(course) => course.found,
+            Motion::QuasiStaticSequence(course) => course.found,
             Motion::Rubber(moving) => moving.rows,
         }
     }
@@ -339,7 +341,7 @@ impl<'p> Motion<'p> {
                     }
                 }
             }
-            Motion::Course(course) => course.find_next()?,
+            Motion::QuasiStaticSequence(course) => course.find_next()?,
             Motion::Rubber(moving) => {
                 (0..count).try_for_each(|_| moving.go_to_next_row())?;
             }
@@ -361,7 +363,9 @@ impl<'p> Motion<'p> {
             Motion::Bearing(_) => Checkpoint::Bearing(Box::default()),
             Motion::Solid(moving) => Checkpoint::Solid(Box::default(), moving.solid.limit),
             Motion::Housed(housed) => Checkpoint::Housed(Box::default(), housed.windows()),
-            Motion::Course(_) => Checkpoint::Course(CourseCheckpoint::default()),
+            Motion::QuasiStaticSequence(_) => {
+                Checkpoint::QuasiStaticSequence(QuasiStaticCheckpoint::default())
+            }
             Motion::Rubber(_) => Checkpoint::Rubber(Box::default(), 0),
         }
     }
@@ -376,7 +380,9 @@ impl<'p> Motion<'p> {
                 moving.solid.checkpoint_into(kept);
             }
             (Motion::Housed(housed), Checkpoint::Housed(kept, _)) => housed.checkpoint_into(kept),
-            (Motion::Course(course), Checkpoint::Course(kept)) => *kept = course.checkpoint(),
+            (Motion::QuasiStaticSequence(course), Checkpoint::QuasiStaticSequence(kept)) => {
+                *kept = course.checkpoint()
+            }
             (Motion::Rubber(moving), Checkpoint::Rubber(kept, rows)) => {
                 (**kept, *rows) = (moving.solid.checkpoint(), moving.rows);
             }

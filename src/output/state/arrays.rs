@@ -40,7 +40,7 @@ pub(super) fn write_arrays(
             friction_entry::write(folder, kept)?;
             (WIDTH, kept.solids.iter().flat_map(|part| of_nodes(&part.solid)).collect())
         }
-        Checkpoint::Course(kept) => {
+        Checkpoint::QuasiStaticSequence(kept) => {
             let mut touches = vec![0.0; kept.nodes.iter().sum()];
             let mut first = 0;
             for (nodes, touching) in kept.nodes.iter().zip(&kept.memory.touching) {

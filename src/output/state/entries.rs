@@ -5,7 +5,7 @@ use super::{
     arrays::{arrays_name, bushings_name, read_arrays, read_touching, table},
     friction_entry::{self, FrictionEntry},
 };
-use crate::equilibrium::quasi_static_sequence::{CourseCheckpoint, Effort};
+use crate::equilibrium::quasi_static_sequence::{Effort, QuasiStaticCheckpoint};
 use crate::equilibrium::warm_started_search::CourseMemory;
 use crate::motion::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::motion::coupled_checkpoint::{
@@ -211,7 +211,7 @@ impl SeatEntry {
 }
 
 impl CourseEntry {
-    pub(super) fn of(kept: &CourseCheckpoint) -> CourseEntry {
+    pub(super) fn of(kept: &QuasiStaticCheckpoint) -> CourseEntry {
         CourseEntry {
             arrays: arrays_name(kept.found),
             largest_residual: kept.effort.largest_residual,
@@ -228,7 +228,7 @@ pub(super) fn place(checkpoint: &Checkpoint) -> (f64, u64) {
         Checkpoint::Bearing(kept) => (kept.time, kept.steps),
         Checkpoint::Solid(kept, _) => (kept.time, kept.steps),
         Checkpoint::Housed(kept, _) => (kept.simulation.time, kept.exchanges),
-        Checkpoint::Course(kept) => (kept.time, kept.found),
+        Checkpoint::QuasiStaticSequence(kept) => (kept.time, kept.found),
         Checkpoint::Rubber(kept, rows) => (kept.state.time, *rows),
     }
 }
@@ -257,7 +257,7 @@ pub(super) fn checkpoint(
             let (kept, windows) = exchange(folder, file, parts, simulation)?;
             Checkpoint::Housed(Box::new(kept), windows)
         }
-        Parts::Course(parts) => {
+        Parts::QuasiStaticSequence(parts) => {
             let course = file.course.as_ref().ok_or(LACKS)?;
             let problem = &parts.problem;
             let nodes: Vec<usize> = problem.seats.iter().map(|s| s.bore.nodes.len()).collect();
@@ -266,7 +266,7 @@ pub(super) fn checkpoint(
             if places.as_ref().is_some_and(|at| at.len() != problem.assembly.bodies.len()) {
                 return Err(LACKS);
             }
-            Checkpoint::Course(CourseCheckpoint {
+            Checkpoint::QuasiStaticSequence(QuasiStaticCheckpoint {
                 time: file.time,
                 found: file.steps,
                 effort: Effort {

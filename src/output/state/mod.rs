@@ -161,7 +161,7 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
             hash.update(format!("{seats} {:?}", parts.options));
             parts.bushings.iter().for_each(|bushing| hash_bushing(&mut hash, bushing));
         }
-        Parts::Course(parts) => {
+        Parts::QuasiStaticSequence(parts) => {
             parts.models.iter().for_each(|model| hash_solid(&mut hash, &model.problem));
             hash.update(format!("{:?}", parts.problem.assembly));
             for QuasiStaticFit { name, bearing, bore, penalty, axial, radius, damping: _ } in
@@ -340,7 +340,7 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
             file.solids = solids.map(entry).collect();
             file.exchange = Some(ExchangeEntry::of(kept, windows));
         }
-        Checkpoint::Course(kept) => file.course = Some(CourseEntry::of(kept)),
+        Checkpoint::QuasiStaticSequence(kept) => file.course = Some(CourseEntry::of(kept)),
         Checkpoint::Rubber(kept, _) => file.rubber = Some(RubberEntry::of(kept, steps)),
     }
     file

@@ -1,7 +1,7 @@
 //! What a housing says of its seat, its equilibrium, its inertia and its windows.
 
 use super::{Part, solid::limit_section};
-use crate::equilibrium::quasi_static_sequence::Moment;
+use crate::equilibrium::quasi_static_sequence::EquilibriumAt;
 use crate::kinematics::vec3::Vec3;
 use crate::motion::coupling::Exchange;
 use crate::output::recorder::seat::{SeatRow, prefix};
@@ -141,7 +141,7 @@ pub fn equilibrium_section(
 ///
 /// # Errors
 /// A value that is not finite.
-pub fn solver_section(moment: &Moment) -> Part {
+pub fn solver_section(moment: &EquilibriumAt) -> Part {
     Ok(json!({
         "iterations": moment.solution.iterations,
         "contact_changes": moment.contact_changes,
@@ -157,7 +157,7 @@ pub(super) fn method(motion: &Motion) -> Option<&'static str> {
         }
         Motion::Solid(_) | Motion::Rubber(_) => None,
         Motion::Housed(housed) => housed.seats().next().map(|_| "explicit"),
-        Motion::Course(_) => Some("quasi-static"),
+        Motion::QuasiStaticSequence(_) => Some("quasi-static"),
     }
 }
 

@@ -53,7 +53,7 @@ pub fn write_run_results(
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
     match session.motion {
         // Times of windows and equilibria are no sums of steps.
-        Motion::Housed(_) | Motion::Course(_) | Motion::Rubber(_) => {
+        Motion::Housed(_) | Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => {
             table.series.write_csv(&csv)?
         }
         Motion::Bearing(_) | Motion::Solid(_) => readable_times(table)?.write_csv(&csv)?,
@@ -129,7 +129,7 @@ pub fn run_summary(
         Motion::Solid(moving) => solid::work(&moving.solid),
         Motion::Rubber(moving) => rubber::work(moving),
         Motion::Housed(housed) => housing::work(housed),
-        Motion::Course(course) => {
+        Motion::QuasiStaticSequence(course) => {
             let effort = &course.effort;
             let residual = quantity("residual", effort.largest_residual, "1")?;
             summary.insert("largest_unbalanced_part_of_load".into(), residual);
@@ -146,13 +146,15 @@ pub fn run_summary(
         Motion::Solid(moving) => Some(solid::step(&moving.solid, report)?),
         Motion::Housed(housed) => Some(housing::step(housed)?),
         Motion::Rubber(moving) => Some(rubber::step(moving)?),
-        Motion::Course(_) => None,
+        Motion::QuasiStaticSequence(_) => None,
     };
     if let Some(step) = step {
         summary.insert("step".into(), step);
     }
     // That of equilibria has energies held, and no ledger.
-    if let Some(energy) = energy(session, table)?.filter(|_| !matches!(motion, Motion::Course(_))) {
+    if let Some(energy) =
+        energy(session, table)?.filter(|_| !matches!(motion, Motion::QuasiStaticSequence(_)))
+    {
         summary.insert("energy".into(), energy);
     }
     if let Some(simulation) = motion.bearing() {

@@ -48,7 +48,7 @@ fn stresses(chains: Chains, along: f64, across: f64) -> [[f64; 3]; 2] {
 }
 
 /// True strain and Cauchy stress (Pa) along the axis, over time.
-pub type Course = Vec<[f64; 2]>;
+pub type QuasiStaticSequence = Vec<[f64; 2]>;
 
 /// A course of true strains at equal steps of `dt` s, free across. `turns` are the indices at which the
 /// rate jumps; 0 is one. Without Maxwell elements (γ, τ in s) it is the equilibrium curve.
@@ -58,7 +58,7 @@ pub fn uniaxial(
     strains: &[f64],
     dt: f64,
     turns: &[usize],
-) -> Course {
+) -> QuasiStaticSequence {
     let mut across = 1.0;
     let mut last = [[0.0; 2]; 2];
     let mut elements = vec![[[0.0; 2]; 2]; maxwell.len()];

@@ -12,7 +12,9 @@ use crate::motion::{ROTOR_IN_ELEMENTS, ROTOR_OF_TETRAHEDRA, RPM, changed_scene, 
 use crate::oracles::run_up::Peak;
 use crate::oracles::whirling_shaft::{End, Length, Part, left, root};
 use crate::pareto::{ParetoContext, Point, Stopwatch, Study, cheapest_ways};
-use crate::rotor_run_up::{Course, Way, balls, followed, on_pins, oracle, rotor, run_up, straight};
+use crate::rotor_run_up::{
+    QuasiStaticSequence, Way, balls, followed, on_pins, oracle, rotor, run_up, straight,
+};
 
 pub const CRITICAL_SPEED: Study = Study {
     id: "rotor_critical_speed",
@@ -254,7 +256,7 @@ fn run_ups(context: &mut ParetoContext) -> Result<(), CaseError> {
         let name = format!("{:.0} µs", 1e6 * step);
         try_way("rk4, shapes to 2 kHz", &name, Beam, 2e3, &way)?;
     }
-    let course: Course = straight(RAMP);
+    let course: QuasiStaticSequence = straight(RAMP);
     let massless = followed(&oracle(&course, UNBALANCE, balls(0.0)), END).top()?;
     let [found, massless] = [off(&other), off(&massless)];
     context.sentence(format!(
