@@ -1,5 +1,5 @@
-//! What works for what: every command on small scenes of every kind of body. docs/features.md has the table, and is
-//! held to what the commands did and said here.
+//! Every command on small scenes of every kind of body. docs/features.md has the table, which this test compares with
+//! what the commands did.
 
 use crate::assembly_common::{BEARING, ENDS, SHAFT};
 use crate::command_line_common::{self as files, Run, bearing, changed, json, read, scene, text};
@@ -9,7 +9,7 @@ use crate::solid_command_common::SHORT_RUN;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a command did as it should, with what it said of limits; or its own reason why not.
+/// Limits that a successful command reported, or the reason why it refused.
 type Cell = Result<String, String>;
 
 /// One kind of body, its scene without `[numerics]` and `[output]`, and a key to sweep.
@@ -19,27 +19,27 @@ struct Body {
     vary: &'static str,
 }
 
-/// A row of the table: its name, what is looked at before it says yes, and the look.
+/// A row of the table: its name, what a yes requires, and the check.
 type Feature = (&'static str, &'static str, fn(&Place) -> Cell);
 
 const FEATURES: [Feature; 15] = [
-    ("check", "it says that the scene is valid", check),
-    ("check --json", "what it prints is one JSON object", check_json),
-    ("plan", "it lists stages and foretells no refusal", plan),
-    ("statics", "`summary.json` and `series.csv` are there", statics),
-    ("run", "`summary.json` says that it is complete, and the last row is of the end", run),
+    ("check", "the scene is reported as valid", check),
+    ("check --json", "the output is one JSON object", check_json),
+    ("plan", "stages are listed, and no refusal is announced", plan),
+    ("statics", "`summary.json` and `series.csv` exist", statics),
+    ("run", "the run is complete, and the last row is at its end", run),
     ("resume", "half a run, resumed, has the `series.csv` of an unbroken one", resume),
     ("threads", "`run --threads 2` has the `series.csv` of one thread", threads),
     ("sweep", "both of two points are in `sweep.csv`", sweep),
     ("modes", "`series.csv` has frequencies", modes),
     ("pack", "`compare` finds the pack equal to results of `statics`", pack),
     ("compare", "results of two equal runs (of statics where nothing runs) are equal", compare),
-    ("fields", "with `fields_interval`, `fields.pvd` lists files that are there", fields),
-    ("spectrum", "`spectrum.csv` is there with `plots = [\"spectrum\"]`, and has rows", spectrum),
+    ("fields", "with `fields_interval`, `fields.pvd` lists files that exist", fields),
+    ("spectrum", "`spectrum.csv` exists with `plots = [\"spectrum\"]`, and has rows", spectrum),
     ("plots", "`plots = [\"series\"]` gives a picture", plots),
     (
         "error control",
-        "with `numerics.accuracy` the run is complete and says that steps follow from it",
+        "with `numerics.accuracy` the run is complete, and its steps follow from the accuracy",
         error_control,
     ),
 ];
@@ -208,7 +208,7 @@ fn check_json(place: &Place) -> Cell {
 
 fn plan(place: &Place) -> Cell {
     let said = place.done(&["plan", &place.out("scene.toml")])?;
-    // What it foretells comes true.
+    // An announced refusal comes true.
     match (said.split_once("the run will be refused: "), &place.whole) {
         (None, Ok(_)) => place.yes(said.contains("does  "), &said),
         (Some((_, reason)), Err(refused)) => {
@@ -321,10 +321,9 @@ fn error_control(place: &Place) -> Cell {
 
 fn page(columns: &BTreeMap<usize, (&'static str, Vec<Cell>)>) -> String {
     let mut page = String::from(
-        "# What works for what\n\n\
-         A cell is *yes*, or what the command says when it is asked, cut to its first clause; what it says of limits stands\n\
-         behind a yes. The table is made by running the command on small scenes; a test holds it to that:\n\
-         `FEATURES=write cargo test --release --test command features` writes it.\n\n|",
+        "# Commands and kinds of scene\n\n\
+         A cell is *yes*, or the first clause of the message with which the command refuses. A limit follows a yes. The table\n\
+         is made by running the command on small scenes: `FEATURES=write cargo test --release --test command features`.\n\n|",
     );
     for (name, _) in columns.values() {
         page += &format!(" | {name}");
@@ -342,7 +341,7 @@ fn page(columns: &BTreeMap<usize, (&'static str, Vec<Cell>)>) -> String {
             page += &format!(" {} |", cell.replace('|', "\\|"));
         }
     }
-    page += "\n\nBefore a cell says yes, this is looked at:\n\n";
+    page += "\n\nA yes requires:\n\n";
     for (name, looked_at, _) in FEATURES {
         page += &format!("- **{name}**: {looked_at}.\n");
     }

@@ -1,4 +1,5 @@
-//! What the repository promises about itself: imports, equations.
+//! Invariants of the repository: imports, equations, words and length of pages.
 
 mod architecture;
 mod equations_map;
+mod words;
