@@ -132,8 +132,6 @@ pub struct Bearing {
     pub slices: usize,
     /// Points across each slice.
     pub points_across: usize,
-    /// Whether the curvature of the contact surface across the groove makes its edges slide.
-    pub heathcote: bool,
     pub damping: ContactDamping,
     /// Between neighbouring balls; `None` lets them pass into each other, which ends the run.
     pub ball_contact: Option<BallContactLaw>,
@@ -330,15 +328,6 @@ impl Assembly {
         held
     }
 
-    /// Whether a load or a given motion changes over time; one that turns at a speed of its own does.
-    pub fn changes(&self) -> bool {
-        let own = self.driven().flat_map(|race| race.loads().chain(race.given()));
-        own.chain(self.of_solids())
-            .chain(self.on_shafts())
-            .any(|profile| !matches!(profile, Profile::Constant(_)))
-            || self.rotating_loads().next().is_some()
-    }
-
     /// Whether a given motion has a corner at `time`, so that velocities may jump.
     pub fn jolts_at(&self, time: f64) -> bool {
         let mut given = self.driven().flat_map(DrivenBody::given);
@@ -393,7 +382,6 @@ impl From<&DynamicProblem> for Assembly {
             traction: problem.traction.clone(),
             slices: problem.slices,
             points_across: problem.points_across,
-            heathcote: problem.heathcote,
             damping: problem.damping,
             ball_contact: problem.ball_contact,
             dents: problem.dents.clone(),

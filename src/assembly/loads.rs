@@ -99,8 +99,6 @@ pub struct DynamicProblem {
     pub slices: usize,
     /// Points across each slice.
     pub points_across: usize,
-    /// Whether the curvature of the contact surface across the groove makes its edges slide.
-    pub heathcote: bool,
     pub damping: ContactDamping,
     /// Between neighbouring balls; `None` lets them pass into each other, which ends the run.
     pub ball_contact: Option<BallContactLaw>,

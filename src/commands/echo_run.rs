@@ -239,15 +239,11 @@ fn traction(problem: &DynamicProblem) -> Echo {
         TractionLaw::SlipSpeed { curve: given } => {
             json!({ "law": "slip-speed", "curve": curve(given, "s/m")? })
         }
-        TractionLaw::Table { points } => {
-            json!({ "law": "table", "points": pairs(points, "m/s", "1")? })
-        }
     };
     Ok(json!({
         "law": law,
         "slices": problem.slices,
         "points_across": problem.points_across,
-        "heathcote": problem.heathcote,
     }))
 }
 
@@ -257,11 +253,6 @@ fn damping(damping: &ContactDamping) -> Echo {
         ContactDamping::HuntCrossley { alpha } => {
             json!({ "law": "hunt-crossley", "alpha": quantity("alpha", *alpha, "s/m")? })
         }
-        ContactDamping::LankaraniNikravesh { restitution, slowest } => json!({
-            "law": "lankarani-nikravesh",
-            "restitution": quantity("restitution", *restitution, "1")?,
-            "slowest": quantity("slowest", *slowest, "m/s")?,
-        }),
     })
 }
 

@@ -1,6 +1,5 @@
 //! Why there is no equilibrium.
 
-use crate::numeric::clock::display_time;
 use crate::solids::bore_equilibrium::BoreError;
 use thiserror::Error;
 
@@ -27,14 +26,6 @@ pub enum StaticsError {
          (numerics.start = \"nominal\")"
     )]
     Unbalanced { body: String },
-    #[error(
-        "nothing holds {body} along {coordinate}: no spring, no given coordinate of it or of the races it is \
-         joined to, while the loads there add up to {load:.3e} N at t = {at} s: hold the coordinate by a \
-         displacement or a spring{start}, balance the loads, or start a motion in nominal positions \
-         (numerics.start = \"nominal\")",
-        at = display_time(*time), start = no_hold(coordinate)
-    )]
-    Unheld { body: String, coordinate: &'static str, load: f64, time: f64 },
     #[error(
         "{ball} has found no equilibrium between the races: {unbalance:.1e} of the force on it is \
          unbalanced; hold or load the inner race differently, or leave the forces on balls out"

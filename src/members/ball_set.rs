@@ -31,8 +31,8 @@ pub struct BallSet {
     pub layout: Layout,
     pub laws: ContactLaws,
     pub table: ContactTable,
-    /// Damping factor of each pair in s/m; zero without damping.
-    pub damping: Vec<f64>,
+    /// Damping factor of contacts with races, s/m; zero without damping.
+    pub damping: f64,
     /// Cosine and sine of each pocket's angle on its cage; they turn with it from where the balls started.
     pocket_angles: Vec<[f64; 2]>,
     /// Contacts of the cage with each ball, then with the guiding race at both ends.
@@ -75,10 +75,6 @@ impl BallSet {
     ) -> BallSet {
         let geometry = &bearing.geometry;
         let radius = geometry.ball_radius;
-        // The deformed surface lies between ball and groove: R = 2 r_g r_b/(r_g + r_b).
-        let curvature = |groove: f64| {
-            if steps.curved { 0.25 * (groove + radius) / (groove * radius) } else { 0.0 }
-        };
         let (dents, no_dents) = match dents::dents(bearing) {
             Ok(dents) => (dents, None),
             Err(error) => (Vec::new(), Some(error)),
@@ -93,22 +89,18 @@ impl BallSet {
             ball_radius: radius,
             traction: bearing.traction.clone(),
             slices: Slices::new(slices, across),
-            curvature: [
-                curvature(geometry.inner.groove_radius),
-                curvature(geometry.outer.groove_radius),
-            ],
             dents,
         };
-        let alpha = match bearing.damping {
+        let damping = match bearing.damping {
             ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
-            ContactDamping::None | ContactDamping::LankaraniNikravesh { .. } => 0.0,
+            ContactDamping::None => 0.0,
         };
         let azimuths = geometry.azimuths(bearing.ball_phase);
         let meetings = if steps.ball_contact { neighbours(layout.balls) } else { 0 };
         BallSet {
             steps,
             table: ContactTable::new(&layout),
-            damping: vec![alpha; 2 * layout.padded],
+            damping,
             pocket_angles: azimuths.into_iter().map(cosine_and_sine).collect(),
             pockets: vec![CageContact::default(); layout.balls],
             guides: [CageContact::default(); 2],
@@ -153,7 +145,8 @@ impl BallSet {
         ran: &mut Counts,
     ) {
         let BallSet { layout, laws, table, damping, races: [inner, outer], steps, .. } = self;
-        let set = contacts::Set { laws, layout, races: [inner, outer], damping, steps: *steps };
+        let set =
+            contacts::Set { laws, layout, races: [inner, outer], damping: *damping, steps: *steps };
         contacts::evaluate(driver, set, state, want, table, work, ran);
         match gravity {
             Some(gravity) => {
@@ -374,33 +367,6 @@ impl BallSet {
             self.on_races[side].add_at(race.position, contact.point, contact.force);
             ledger[Ledger::CageFriction as usize] += contact.power;
         }
-    }
-
-    /// Lankarani and Nikravesh: a contact that has just begun takes its speed of approach as v₀.
-    /// History changes here and nowhere else, once a step; call after an evaluation. Returns
-    /// whether a damping factor has changed.
-    pub fn commit_damping(&mut self, bearing: &Bearing, was_loaded: &mut [bool]) -> bool {
-        let ContactDamping::LankaraniNikravesh { restitution, slowest } = bearing.damping else {
-            return false;
-        };
-        let mut changed = false;
-        for race in 0..2 {
-            for ball in 0..self.layout.balls {
-                let pair = race * self.layout.padded + ball;
-                let contact = &self.table.contact[pair];
-                let loaded = contact.overlap > 0.0;
-                let before = self.damping[pair];
-                if loaded && !was_loaded[pair] {
-                    let approach = contact.closing_speed.abs().max(slowest);
-                    self.damping[pair] = 0.75 * (1.0 - restitution * restitution) / approach;
-                } else if !loaded {
-                    self.damping[pair] = 0.0;
-                }
-                was_loaded[pair] = loaded;
-                changed |= self.damping[pair] != before;
-            }
-        }
-        changed
     }
 }
 

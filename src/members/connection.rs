@@ -152,30 +152,6 @@ impl Connection {
         }
     }
 
-    /// Takes its springs or its dashpots out, and with either its Maxwell elements, which are both; whether there
-    /// were any.
-    pub fn take_out(&mut self, springs: bool) -> bool {
-        match &mut self.law {
-            Law::SpringDashpot(law) => {
-                let relaxed = std::mem::take(&mut law.maxwell).is_empty();
-                let part = if springs { &mut law.stiffness } else { &mut law.damping };
-                std::mem::take(part) != [0.0; 6] || !relaxed
-            }
-            Law::Torsion(law) => {
-                let part = if springs { &mut law.stiffness } else { &mut law.damping };
-                std::mem::take(part) != 0.0
-            }
-        }
-    }
-
-    /// Whether a spring of it resists a displacement along the first end's axis X, Y or Z.
-    pub fn holds_along(&self, axis: usize) -> bool {
-        match &self.law {
-            Law::SpringDashpot(law) => law.stiffness[axis] != 0.0,
-            Law::Torsion(_) => false,
-        }
-    }
-
     /// Whether its springs, dashpots or Maxwell elements along the first end's Y differ from those along Z, or about them.
     pub fn is_uneven(&self) -> bool {
         match &self.law {

@@ -8,8 +8,8 @@ use crate::ch2_housing::bearing::slices::{
     integrate_slope, sliding, traction_force,
 };
 use crate::ch2_housing::bearing::traction::{
-    Resistance, Steepness, TractionLaw, coefficient, coefficient_and_slope, per_entrainment,
-    resistance, rounded_resistance, rounded_steepness, steepness,
+    Resistance, Steepness, TractionLaw, per_entrainment, resistance, rounded_resistance,
+    rounded_steepness, steepness,
 };
 use crate::kinematics::vec3::Vec3;
 use crate::members::contacts::{ContactLaws, ContactTable, Want};
@@ -40,7 +40,7 @@ fn lever(laws: &ContactLaws, overlap: f64) -> f64 {
 fn patch(laws: &ContactLaws, race: usize, overlap: f64) -> Patch {
     let semi_major = laws.races[race].semi_major_factor * overlap.sqrt();
     let semi_minor = semi_major / laws.races[race].ellipticity;
-    Patch { semi_major, semi_minor, curvature: laws.curvature[race] }
+    Patch { semi_major, semi_minor }
 }
 
 fn sliding_of(
@@ -131,16 +131,6 @@ pub(crate) fn traction_lanes<const SLOPES: bool>(
             let friction = |square, share, _| rounded_resistance(square, share, coefficient, speed);
             lanes_of::<SLOPES>(laws, layout, state, races, table, |_| 0.0, (friction, slopes));
         }
-        law @ TractionLaw::Table { .. } => {
-            let slopes = |square, share, entrainment| {
-                steepness(square, share, |slip| coefficient_and_slope(law, slip, entrainment))
-            };
-            let friction = |square, share, entrainment| {
-                resistance(square, share, |slip| coefficient(law, slip, entrainment))
-            };
-            let prepare = |entrainment| entrainment;
-            lanes_of::<SLOPES>(laws, layout, state, races, table, prepare, (friction, slopes));
-        }
     }
 }
 
@@ -165,7 +155,7 @@ fn lanes_of<const SLOPES: bool>(
     let ContactTable { contact, load, traction, sliding, slope, active, .. } = table;
     for block in active.chunks(LANES) {
         let mut slip = [[0.0; LANES]; 2];
-        let mut spin = [[0.0; LANES]; 3];
+        let mut spin = [0.0; LANES];
         let mut patches = Patches::default();
         // What the law needs of the entrainment speed; lanes without a pair slide nowhere.
         let mut rolling = [1.0; LANES];
@@ -174,9 +164,7 @@ fn lanes_of<const SLOPES: bool>(
             let here = sliding_of(laws, layout, state, &motions, &axes, pair, &contact[pair]);
             slip[0][l] = here.slip[0];
             slip[1][l] = here.slip[1];
-            for i in 0..3 {
-                spin[i][l] = here.relative_spin[i];
-            }
+            spin[l] = here.relative_spin[2];
             rolling[l] = prepare(here.entrainment);
             patches.put(l, laws.slices.across, patch(laws, race, contact[pair].overlap));
             sliding[pair] = here;
@@ -202,7 +190,6 @@ fn lanes_of<const SLOPES: bool>(
 struct Patches {
     semi_major: [f64; LANES],
     semi_minor: [f64; LANES],
-    curvature: [f64; LANES],
 }
 
 impl Patches {
@@ -213,16 +200,11 @@ impl Patches {
         if across {
             self.semi_minor[lane] = patch.semi_minor;
         }
-        self.curvature[lane] = patch.curvature;
     }
 
     #[inline(always)]
     fn at(&self, lane: usize) -> Patch {
-        Patch {
-            semi_major: self.semi_major[lane],
-            semi_minor: self.semi_minor[lane],
-            curvature: self.curvature[lane],
-        }
+        Patch { semi_major: self.semi_major[lane], semi_minor: self.semi_minor[lane] }
     }
 }
 
@@ -231,7 +213,7 @@ impl Patches {
 fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
     laws: &ContactLaws,
     slip: &[[f64; LANES]; 2],
-    spin: &[[f64; LANES]; 3],
+    spin: &[f64; LANES],
     patches: &Patches,
     prepared: &[f64; LANES],
     (friction, slopes): (
@@ -243,8 +225,6 @@ fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
     let mut rolling = [0.0; LANES];
     let mut transverse = [0.0; LANES];
     let mut moment = [0.0; LANES];
-    let mut about_t = [0.0; LANES];
-    let mut about_s = [0.0; LANES];
     let mut power = [0.0; LANES];
     let mut tt = [0.0; LANES];
     let mut ts = [0.0; LANES];
@@ -259,23 +239,20 @@ fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
                 rolling: rolling[l],
                 transverse: transverse[l],
                 moment: moment[l],
-                curvature_moment: [about_t[l], about_s[l]],
                 power: power[l],
             };
             let here = [slip[0][l], slip[1][l]];
-            let turning = [spin[0][l], spin[1][l], spin[2][l]];
             let friction = |square, share| friction(square, share, prepared[l]);
-            let after = add_slice::<ACROSS>(&before, here, turning, point, share, friction);
+            let after = add_slice::<ACROSS>(&before, here, spin[l], point, share, friction);
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;
             moment[l] = after.moment;
-            [about_t[l], about_s[l]] = after.curvature_moment;
             power[l] = after.power;
             if SLOPES {
                 let before = [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]];
                 let slopes = |square, share| slopes(square, share, prepared[l]);
                 [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]] =
-                    add_slope::<ACROSS>(&before, here, turning, point, share, slopes);
+                    add_slope::<ACROSS>(&before, here, spin[l], point, share, slopes);
             }
         }
     }
@@ -285,7 +262,6 @@ fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
             rolling: rolling[l],
             transverse: transverse[l],
             moment: moment[l],
-            curvature_moment: [about_t[l], about_s[l]],
             power: power[l],
         };
     }

@@ -28,8 +28,6 @@ pub struct ContactLaws {
     pub ball_radius: f64,
     pub traction: TractionLaw,
     pub slices: Slices,
-    /// 1/(2R) of the contact surface across each groove, 1/m; zero leaves the Heathcote term out.
-    pub curvature: [f64; 2],
     /// In either race.
     pub dents: Vec<DentOnRace>,
 }
@@ -126,8 +124,8 @@ pub struct Set<'s> {
     pub layout: &'s Layout,
     /// Inner, outer.
     pub races: [&'s BodyKinematics; 2],
-    /// Factor of each pair, s/m.
-    pub damping: &'s [f64],
+    /// Factor of the damping, s/m.
+    pub damping: f64,
     pub steps: BearingSteps,
 }
 
@@ -168,10 +166,6 @@ pub fn evaluate(
     let slices = (table.active.len() * laws.slices.middle.len()) as u64;
     work.slices += slices;
     ran.add(Stage::Traction, slices);
-    // Without a curvature the slices lie in a plane.
-    if laws.curvature != [0.0; 2] {
-        ran.add(Stage::CurvedSurface, slices);
-    }
     match (driver, want) {
         (Kernel::Scalar, _) => traction_plain(laws, layout, state, races, want, table),
         (Kernel::Simd, Want::Forces) => {
@@ -183,7 +177,7 @@ pub fn evaluate(
     }
 }
 
-/// The load of a pair; without damping its factor is not looked at.
+/// The load of a pair; without damping the factor is not looked at.
 #[inline(always)]
 fn load_of<const DAMPED: bool>(law: &RaceLaw, contact: &RaceContact, factor: f64) -> f64 {
     if DAMPED {
@@ -222,7 +216,7 @@ fn detect_plain<const DAMPED: bool>(
                 &laws.races[race],
             );
             table.contact[pair] = contact;
-            table.load[pair] = load_of::<DAMPED>(&laws.races[race], &contact, damping[pair]);
+            table.load[pair] = load_of::<DAMPED>(&laws.races[race], &contact, damping);
         }
     }
 }
@@ -252,7 +246,6 @@ fn detect_lanes<const DAMPED: bool>(
             let motion = &now.motion;
             let law = &laws.races[race];
             let pair = race * layout.padded + first;
-            let factor: &[f64] = &damping[pair..pair + LANES];
             let mut contacts = [RaceContact::default(); LANES];
             let mut loads = [0.0; LANES];
             for l in 0..LANES {
@@ -265,7 +258,7 @@ fn detect_lanes<const DAMPED: bool>(
                     law,
                 );
                 contacts[l] = contact;
-                loads[l] = load_of::<DAMPED>(law, &contact, factor[l]);
+                loads[l] = load_of::<DAMPED>(law, &contact, damping);
             }
             table.contact[pair..pair + LANES].copy_from_slice(&contacts);
             table.load[pair..pair + LANES].copy_from_slice(&loads);

@@ -199,7 +199,7 @@ pub(crate) fn apply(
             let across = add_scaled(scale(axis, cosine), -law.outward * sine, contact.outward);
             let directions = [along, across];
             let dented = dented(law, pair, &contact, &lost, curvature, directions);
-            let share = 1.0 + damping[pair] * contact.closing_speed;
+            let share = 1.0 + damping * contact.closing_speed;
             table.load[pair] = dented.elastic * if share < 0.0 { 0.0 } else { share };
             table.contact[pair].overlap -= lost.value;
             table.dented.push(dented);

@@ -24,9 +24,6 @@ pub struct Checkpoint {
     pub extremes: Vec<Extremes>,
     /// The whole state vector; see [`crate::assembly::state`].
     pub state: Vec<f64>,
-    /// Contact damping of each pair and whether it carried load: the history of contacts.
-    pub damping: Vec<f64>,
-    pub was_loaded: Vec<bool>,
     /// The ledger counts from its start.
     pub balance: Balance,
     pub work: Work,
@@ -38,11 +35,7 @@ impl Checkpoint {
     /// Whether its lists have the lengths that the problem asks for.
     pub fn fits(&self, assembly: &Assembly) -> bool {
         let layouts = Layout::of(assembly);
-        let pairs: usize = layouts.iter().map(|layout| 2 * layout.padded).sum();
-        self.state.len() == Places::of(assembly).state_len()
-            && self.damping.len() == pairs
-            && self.was_loaded.len() == pairs
-            && self.extremes.len() == layouts.len()
+        self.state.len() == Places::of(assembly).state_len() && self.extremes.len() == layouts.len()
     }
 }
 
@@ -62,11 +55,6 @@ impl Simulation {
         checkpoint.step_watch = self.step_watch;
         checkpoint.extremes.clone_from(&self.extremes);
         checkpoint.state.clone_from(&self.state);
-        checkpoint.damping.clear();
-        for set in &self.system.sets {
-            checkpoint.damping.extend_from_slice(&set.damping);
-        }
-        checkpoint.was_loaded.clone_from(&self.was_loaded);
         checkpoint.balance = self.balance;
         checkpoint.work = self.system.work;
         checkpoint.control = self.control.as_ref().map(|control| control.memory);
@@ -105,15 +93,8 @@ impl Simulation {
         simulation.limit = checkpoint.limit;
         simulation.step_watch = checkpoint.step_watch;
         simulation.extremes.clone_from(&checkpoint.extremes);
-        let mut damping = checkpoint.damping.as_slice();
-        for set in &mut simulation.system.sets {
-            let (own, others) = damping.split_at(set.damping.len());
-            set.damping.copy_from_slice(own);
-            damping = others;
-        }
         simulation.take_first_rates();
         simulation.system.work = checkpoint.work;
-        simulation.was_loaded.copy_from_slice(&checkpoint.was_loaded);
         simulation.balance = checkpoint.balance;
         Ok(simulation)
     }

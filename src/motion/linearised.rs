@@ -10,7 +10,7 @@
 //! symmetric and moves its slopes by a part hγ · (turning rate) of themselves. Orbits turn in frames of
 //! their own ([`crate::motion::orbit_frame`]). Left out are how the direction of the normal force turns as a
 //! ball leaves its frame's axes, how traction follows the entrainment speed,
-//! the Heathcote moments and gyroscopic moments, those of bending shafts too. A W-method keeps its order without them.
+//! gyroscopic moments, those of bending shafts too. A W-method keeps its order without them.
 
 use crate::assembly::lists::{Bearing, Mobility};
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};

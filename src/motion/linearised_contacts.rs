@@ -51,7 +51,7 @@ pub(crate) fn race_contacts(
         // K δ^{3/2} (1 + c δ̇).
         let share = table.load[pair] / elastic;
         to.stiffness[lane] = share * stiffness;
-        to.damping[lane] = elastic * set.damping[pair];
+        to.damping[lane] = elastic * set.damping;
         let between = sub(layout.ball_vector(state, POSITION, ball), motion.position);
         put(&mut to.on_ball[0], lane, joined(normal, [0.0; 3]));
         if let Some(hub) = hub {

@@ -112,7 +112,6 @@ pub struct Simulation {
     pub(crate) options: RunOptions,
     integrator: Stepper,
     attempt: Attempt,
-    pub(crate) was_loaded: Vec<bool>,
     pub(crate) balance: Balance,
     pub(crate) rates: Vec<f64>,
 }
@@ -265,8 +264,6 @@ impl Simulation {
             stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
             ..StepWatch::default()
         };
-        let mut was_loaded = vec![false; system.pairs()];
-        system.commit_damping(&mut was_loaded);
         let control = control.map(|mut control| {
             control.record(&system);
             step_size = control.first_step();
@@ -278,7 +275,6 @@ impl Simulation {
             integrator,
             attempt: Attempt::new(length),
             balance,
-            was_loaded,
             rates,
             system,
             state,
@@ -388,9 +384,6 @@ impl Simulation {
         };
         self.steps += 1;
         self.time += taken;
-        if self.system.commit_damping(&mut self.was_loaded) {
-            self.take_first_rates();
-        }
         self.watch()?;
         balanced?;
         Ok(taken)

@@ -1,14 +1,12 @@
 //! The step that Runge–Kutta can take: from the Jacobian's eigenvalues at a state.
 
-use crate::assembly::lists::{Bearing, Body};
-use crate::assembly::loads::DrivenBody;
-use crate::assembly::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
-use crate::ch2_housing::bearing::cage::CageForce;
-use crate::ch2_housing::bearing::traction::TractionLaw;
-use crate::ch2_housing::bore_contact::Penalty;
-use crate::members::ball_set::BallSet;
+use crate::assembly::lists::Assembly;
+use crate::assembly::state::{
+    Layout, ORIENTATION, POSITION, Places, SPIN, VELOCITY, quaternion_rate,
+};
+use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::motion::system::System;
-use nalgebra::{Complex, DMatrix, Quaternion, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Quaternion, Schur};
 
 /// Where the step of an explicit method ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,140 +15,8 @@ pub struct StepLimit {
     pub step: f64,
     /// The eigenvalue that sets it, 1/s.
     pub eigenvalue: Complex<f64>,
-    pub cause: Cause,
-}
-
-/// What makes the eigenvalue what it is: without it the step could be longer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cause {
-    Contact,
-    CageContact,
-    BallContact,
-    FoundationSpring,
-    Traction,
-    ContactDamping,
-    CageFriction,
-    BallFriction,
-    FoundationDashpot,
-    ConnectionSpring,
-    ConnectionDashpot,
-    Seat,
-    Solid,
-}
-
-impl Cause {
-    pub const ALL: [Cause; 13] = [
-        Cause::Contact,
-        Cause::CageContact,
-        Cause::BallContact,
-        Cause::FoundationSpring,
-        Cause::Traction,
-        Cause::ContactDamping,
-        Cause::CageFriction,
-        Cause::BallFriction,
-        Cause::FoundationDashpot,
-        Cause::ConnectionSpring,
-        Cause::ConnectionDashpot,
-        Cause::Seat,
-        Cause::Solid,
-    ];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Cause::Contact => "stiffest contact",
-            Cause::CageContact => "contact of the cage",
-            Cause::BallContact => "contact between balls",
-            Cause::FoundationSpring => "spring of the foundation",
-            Cause::Traction => "traction onset",
-            Cause::ContactDamping => "contact damping",
-            Cause::CageFriction => "friction onset of the cage",
-            Cause::BallFriction => "friction onset between balls",
-            Cause::FoundationDashpot => "dashpot of the foundation",
-            Cause::ConnectionSpring => "spring between bodies",
-            Cause::ConnectionDashpot => "dashpot between bodies",
-            Cause::Seat => "seat in a solid",
-            Cause::Solid => "shape of a reduced solid",
-        }
-    }
-
-    /// Takes it out of the equations; whether there was anything to take out.
-    fn remove(self, system: &mut System) -> bool {
-        let foundations = |system: &mut System, pick: fn(&mut DrivenBody) -> &mut [f64; 5]| {
-            let mut any = false;
-            for race in system.assembly.bodies.iter_mut().filter_map(Body::driven_mut) {
-                any |= *pick(race) != [0.0; 5];
-                *pick(race) = [0.0; 5];
-            }
-            any
-        };
-        let bearings = |system: &mut System, take: &dyn Fn(&mut BallSet, &mut Bearing) -> bool| {
-            let System { sets, assembly, .. } = system;
-            let mut any = false;
-            for (set, bearing) in sets.iter_mut().zip(&mut assembly.bearings) {
-                any |= take(set, bearing);
-            }
-            any
-        };
-        match self {
-            // What is left when it is nothing else.
-            Cause::Contact => false,
-            Cause::Traction => bearings(system, &|set, _| {
-                set.steps.traction = false;
-                std::mem::replace(&mut set.laws.traction, TractionLaw::None) != TractionLaw::None
-            }),
-            Cause::ContactDamping => bearings(system, &|set, _| {
-                let any = set.damping.iter().any(|factor| *factor != 0.0);
-                set.damping.fill(0.0);
-                any
-            }),
-            Cause::CageContact => bearings(system, &|_, bearing| {
-                bearing.cage.as_mut().is_some_and(|cage| {
-                    cage.contacts.force = CageForce::Penalty { stiffness: 0.0 };
-                    true
-                })
-            }),
-            Cause::CageFriction => bearings(system, &|_, bearing| {
-                let cage = bearing.cage.as_mut();
-                cage.is_some_and(|cage| std::mem::replace(&mut cage.contacts.friction, 0.0) != 0.0)
-            }),
-            Cause::BallContact | Cause::BallFriction => bearings(system, &|set, bearing| {
-                let touching = set.meetings.iter().any(|meeting| meeting.normal_load > 0.0);
-                let Some(law) = bearing.ball_contact.as_mut().filter(|_| touching) else {
-                    return false;
-                };
-                let part = match self {
-                    Cause::BallContact => &mut law.stiffness,
-                    _ => &mut law.friction,
-                };
-                std::mem::replace(part, 0.0) != 0.0
-            }),
-            Cause::FoundationSpring => foundations(system, |race| &mut race.foundation_stiffness),
-            Cause::FoundationDashpot => foundations(system, |race| &mut race.foundation_damping),
-            Cause::Seat => {
-                for seat in &mut system.assembly.seats {
-                    seat.penalty = Penalty::PerArea(0.0);
-                }
-                !system.assembly.seats.is_empty()
-            }
-            Cause::Solid => {
-                // Without springs and forces shapes swing at no frequency.
-                for solid in &mut system.assembly.solids {
-                    solid.frequencies.fill(0.0);
-                    for surface in &mut solid.surfaces {
-                        surface.shapes.fill(0.0);
-                    }
-                }
-                !system.assembly.solids.is_empty()
-            }
-            Cause::ConnectionSpring | Cause::ConnectionDashpot => {
-                let mut any = false;
-                for connection in &mut system.assembly.connections {
-                    any |= connection.take_out(self == Cause::ConnectionSpring);
-                }
-                any
-            }
-        }
-    }
+    /// State entry of the rate that has most kinetic energy in its mode.
+    pub component: Option<usize>,
 }
 
 impl StepLimit {
@@ -158,19 +24,59 @@ impl StepLimit {
         eigenvalue.re.abs() > eigenvalue.im.abs()
     }
 
-    /// What sets the step, and how fast it is.
-    pub fn reason(&self) -> String {
+    /// How fast the limiting mode is, and what moves most in it.
+    pub fn reason(&self, assembly: &Assembly) -> String {
         let (re, im) = (self.eigenvalue.re, self.eigenvalue.im);
-        let name = self.cause.name();
-        if !StepLimit::decays(self.eigenvalue) {
-            return format!("{name}: oscillation at {:.0} Hz", im.abs() / std::f64::consts::TAU);
-        }
-        let what = match self.cause {
-            Cause::Traction | Cause::CageFriction | Cause::BallFriction => "slip",
-            _ => "motion",
+        let rate = match StepLimit::decays(self.eigenvalue) {
+            true => format!("decay at {:.2e} 1/s", -re),
+            false => format!("oscillation at {:.0} Hz", im.abs() / std::f64::consts::TAU),
         };
-        format!("{name}: {what} decays at {:.2e} 1/s", -re)
+        match self.component.and_then(|entry| coordinate(assembly, entry)) {
+            Some((name, _)) => format!("{rate}, mainly of {name}"),
+            None => rate,
+        }
     }
+}
+
+/// Name of the coordinate whose rate is an entry of the state, and its mass, moment of inertia or (of modes) one.
+fn coordinate(assembly: &Assembly, entry: usize) -> Option<(String, f64)> {
+    let rigid = |at: &dyn Fn(usize) -> usize, inertia: &Inertia, name: &dyn Fn() -> String| {
+        (0..3).find_map(|i| {
+            let axis = ["x", "y", "z"][i];
+            let moment = if i == 0 { inertia.axial } else { inertia.transverse };
+            if entry == at(VELOCITY + i) {
+                return Some((format!("{} along {axis}", name()), inertia.mass));
+            }
+            (entry == at(SPIN + i)).then(|| (format!("{} about {axis}", name()), moment))
+        })
+    };
+    for (bearing, layout) in assembly.bearings.iter().zip(Layout::of(assembly)) {
+        let of = || bearing.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+        let ball = |ball: usize| {
+            let at = |component: usize| layout.ball(component) + ball;
+            rigid(&at, &bearing.ball, &|| format!("ball {}{}", ball + 1, of()))
+        };
+        if let Some(found) = (0..layout.balls).find_map(ball) {
+            return Some(found);
+        }
+    }
+    let places = Places::of(assembly);
+    for (index, body) in assembly.bodies.iter().enumerate() {
+        let at = |component: usize| places.body(index) + component;
+        let found = body.inertia().and_then(|of| rigid(&at, of, &|| body.name.clone()));
+        if found.is_some() {
+            return found;
+        }
+    }
+    let solids = assembly.solids.iter().zip(places.solids(assembly));
+    let solids = solids.map(|(solid, at)| (at + solid.count(), solid.count(), &solid.name));
+    let shafts = assembly.shafts.iter().zip(places.shafts(assembly)).map(|(shaft, at)| {
+        let name = &assembly.bodies[shaft.body].name;
+        (at + shaft.amplitudes(), shaft.amplitudes(), name)
+    });
+    let mut modes = solids.chain(shafts);
+    let (first, _, name) = modes.find(|(at, count, _)| (*at..at + count).contains(&entry))?;
+    Some((format!("mode {} of {name}", entry - first + 1), 1.0))
 }
 
 /// |1 + z + z²/2 + z³/6 + z⁴/24|, the growth of one step.
@@ -301,60 +207,44 @@ fn directions(system: &System) -> Vec<Direction> {
 
 /// Largest stable step at a state; `None` where nothing is stiff (no contact at all).
 pub fn step_limit(system: &mut System, t: f64, state: &[f64]) -> Option<StepLimit> {
-    let (step, eigenvalue) = limiting(system, t, state)?;
-    let cause = cause(system, t, state, step, eigenvalue);
-    Some(StepLimit { step, eigenvalue, cause })
+    let matrix = jacobian(system, t, state);
+    let (step, eigenvalue) = limiting(&matrix)?;
+    let component = largest_component(system, &matrix, eigenvalue);
+    Some(StepLimit { step, eigenvalue, component })
 }
 
-/// The part of the equations without which the step could grow most; the contacts, if none makes
-/// a tenth of difference.
-fn cause(system: &mut System, t: f64, state: &[f64], step: f64, eigenvalue: Complex<f64>) -> Cause {
-    let candidates: &[Cause] = if StepLimit::decays(eigenvalue) {
-        &[
-            Cause::Traction,
-            Cause::ContactDamping,
-            Cause::CageFriction,
-            Cause::BallFriction,
-            Cause::FoundationDashpot,
-            Cause::ConnectionDashpot,
-        ]
-    } else {
-        &[
-            Cause::CageContact,
-            Cause::BallContact,
-            Cause::FoundationSpring,
-            Cause::ConnectionSpring,
-            Cause::Seat,
-            Cause::Solid,
-        ]
-    };
-    let mut found = (1.1 * step, Cause::Contact);
-    for &candidate in candidates {
-        let assembly = system.assembly.clone();
-        let sets: Vec<_> =
-            system.sets.iter().map(|s| (s.laws.clone(), s.damping.clone(), s.steps)).collect();
-        let longer = if candidate.remove(system) {
-            system.renew_seats();
-            limiting(system, t, state).map_or(f64::INFINITY, |limit| limit.0)
-        } else {
-            step
-        };
-        system.assembly = assembly;
-        system.renew_seats();
-        for (set, (laws, damping, steps)) in system.sets.iter_mut().zip(sets) {
-            (set.laws, set.damping, set.steps) = (laws, damping, steps);
-        }
-        if longer > found.0 {
-            found = (longer, candidate);
-        }
+/// State entry of the rate that has most kinetic energy in the mode of an eigenvalue, by inverse iteration.
+fn largest_component(
+    system: &System,
+    matrix: &DMatrix<f64>,
+    eigenvalue: Complex<f64>,
+) -> Option<usize> {
+    // Close by, so that the matrix is not singular.
+    let near = eigenvalue * (1.0 + 1e-6);
+    let mut shifted = matrix.map(|value| Complex::new(value, 0.0));
+    for i in 0..matrix.nrows() {
+        shifted[(i, i)] -= near;
     }
-    found.1
+    let factors = shifted.lu();
+    let mut mode = DVector::from_element(matrix.nrows(), Complex::new(1.0, 0.0));
+    for _ in 0..3 {
+        factors.solve_mut(&mut mode);
+        mode.unscale_mut(mode.norm());
+    }
+    let energy = |(direction, part): (Direction, &Complex<f64>)| match direction {
+        Direction::Rate(entry) => {
+            let (_, mass) = coordinate(&system.assembly, entry)?;
+            Some((entry, mass * part.norm_sqr()))
+        }
+        Direction::Position(_) | Direction::Turn { .. } => None,
+    };
+    let energies = directions(system).into_iter().zip(mode.iter()).filter_map(energy);
+    energies.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(entry, _)| entry)
 }
 
 /// The largest stable step and the eigenvalue that sets it.
-fn limiting(system: &mut System, t: f64, state: &[f64]) -> Option<(f64, Complex<f64>)> {
-    let matrix = jacobian(system, t, state);
-    let eigenvalues = eigenvalues(&matrix)?;
+fn limiting(matrix: &DMatrix<f64>) -> Option<(f64, Complex<f64>)> {
+    let eigenvalues = eigenvalues(matrix)?;
     let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
     eigenvalues
         .iter()

@@ -12,7 +12,6 @@ use crate::members::rigid_body::BodyKinematics;
 use crate::members::section_attachments::{SectionAttachments, kinematics_at_attachment};
 use crate::motion::rolling_velocity;
 use crate::motion::rolling_velocity::Rates;
-use crate::motion::unconstrained_axes::check_unconstrained_axes;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -24,14 +23,13 @@ use std::f64::consts::TAU;
 /// `start` says, still.
 ///
 /// # Errors
-/// When the loads have no equilibrium, at t = 0 or, since nothing holds the bearing against them, later.
+/// When the loads have no equilibrium at t = 0.
 pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
     if !assembly.solids.is_empty() {
         let held = at_equilibrium(&assembly.with_seats_held())?;
         return Ok(with_solids(assembly, &held));
     }
     let now = at_start(assembly)?;
-    check_unconstrained_axes(assembly)?;
     let rates = rolling_velocity::rates(assembly, &now);
     let bodies: Vec<[f64; 5]> =
         (0..assembly.bodies.len()).map(|body| now.place(assembly, body)).collect();

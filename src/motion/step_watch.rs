@@ -94,7 +94,7 @@ fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness 
         most = most.largest(&Stiffness {
             oscillation: 1.5 * law.stiffness * overlap.sqrt() * per_mass,
             decay: (slope * set.table.load[pair] * at_surface)
-                .max(set.damping[pair] * elastic * per_mass),
+                .max(set.damping * elastic * per_mass),
         });
     }
     if let Some(law) = &bearing.ball_contact {
@@ -129,26 +129,12 @@ fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness 
 /// What is known of the limit so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepWatch {
-    /// Times the Jacobian was asked during the run.
-    pub judged: u64,
     /// Smallest limit found, s; none where nothing was stiff yet.
     pub smallest: Option<f64>,
     /// Stiffest that the contacts were when it was asked.
     pub stiffest: Stiffness,
-    /// Largest step over limit above one, and when, s.
-    pub exceeded: Option<[f64; 2]>,
-    /// Of a step that follows from the limit only.
-    pub shortened: Option<Shortened>,
-}
-
-/// How the limit has come down on a step that follows from it. The present step is the shortest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shortened {
-    pub times: u64,
-    /// Step at the start, s.
-    pub from: f64,
-    /// When the last time was, s.
-    pub last: f64,
+    /// Times that a step which follows from the limit was shortened.
+    pub shortened: u64,
 }
 
 impl StepWatch {
@@ -170,7 +156,7 @@ impl Simulation {
     pub fn watch_step(&mut self) -> Result<Option<f64>, SimulationError> {
         let now = stiffness(&self.system);
         let sets = &self.system.sets;
-        let damped = sets.iter().flat_map(|set| &set.damping).any(|damping| *damping > 0.0);
+        let damped = sets.iter().any(|set| set.damping > 0.0);
         let steps = self.steps;
         let on_schedule = sets.iter().any(|set| set.laws.traction != TractionLaw::None)
             && (steps.is_power_of_two() || steps.is_multiple_of(JUDGE_EVERY));
@@ -186,14 +172,9 @@ impl Simulation {
         }
     }
 
-    /// Goes on with a shorter step and keeps account of it.
+    /// Goes on with a shorter step.
     pub fn shorten_step(&mut self, step: f64) {
-        let earlier = self.step_watch.shortened;
-        self.step_watch.shortened = Some(Shortened {
-            times: earlier.map_or(0, |earlier| earlier.times) + 1,
-            from: earlier.map_or(self.step_size, |earlier| earlier.from),
-            last: self.time,
-        });
+        self.step_watch.shortened += 1;
         self.step_size = step;
     }
 
@@ -217,7 +198,6 @@ impl Simulation {
         (self.system.work, self.system.ran) = (work, ran);
         self.system.ran.whole.add(Stage::StabilityLimit, 1);
         let watch = &mut self.step_watch;
-        watch.judged += 1;
         watch.stiffest = watch.stiffest.largest(&now);
         let Some(limit) = limit else { return Ok(None) };
         watch.smallest = Some(watch.smallest.map_or(limit.step, |least| least.min(limit.step)));
@@ -229,16 +209,13 @@ impl Simulation {
             self.limit = Some(limit);
             return Ok(Some(fraction * limit.step));
         }
-        if ratio > 1.0 && watch.exceeded.is_none_or(|[most, _]| ratio > most) {
-            watch.exceeded = Some([ratio, self.time]);
-        }
         if ratio <= TOLERATED {
             return Ok(None);
         }
         Err(SimulationError::StepTooLong {
             size: self.step_size,
             limit: limit.step,
-            reason: limit.reason(),
+            reason: limit.reason(&self.system.assembly),
             time: self.time,
             step: self.steps,
         })

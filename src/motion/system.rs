@@ -274,13 +274,6 @@ impl System {
         }
     }
 
-    /// Seats as the assembly has them now.
-    pub(crate) fn renew_seats(&mut self) {
-        let solids = &self.assembly.solids;
-        let seats = self.assembly.seats.iter();
-        self.seats = seats.map(|seat| SeatNow::new(seat, &solids[seat.solid])).collect();
-    }
-
     /// How far the shapes of a reduced solid have gone (m), and how fast (m/s).
     pub fn shapes_of<'s>(&self, state: &'s [f64], solid: usize) -> (&'s [f64], &'s [f64]) {
         let (at, count) = (self.solids[solid], self.assembly.solids[solid].count());
@@ -373,23 +366,5 @@ impl System {
     pub(crate) fn longest_past_dents(&self, state: &[f64]) -> f64 {
         let dented = self.sets.iter().filter(|set| set.steps.dents);
         dented.fold(f64::INFINITY, |least, set| least.min(dents::longest_step(set, state)))
-    }
-
-    /// History of contact damping, once a step and after an evaluation; `was_loaded` holds all pairs of
-    /// all bearings. Returns whether a damping factor has changed.
-    pub fn commit_damping(&mut self, was_loaded: &mut [bool]) -> bool {
-        let mut changed = false;
-        let mut left = was_loaded;
-        for (set, bearing) in self.sets.iter_mut().zip(&self.assembly.bearings) {
-            let (own, others) = left.split_at_mut(set.damping.len());
-            changed |= set.commit_damping(bearing, own);
-            left = others;
-        }
-        changed
-    }
-
-    /// Pairs of ball and race in all bearings, lanes beyond the last ball included.
-    pub fn pairs(&self) -> usize {
-        self.sets.iter().map(|set| set.damping.len()).sum()
     }
 }

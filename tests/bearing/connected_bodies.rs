@@ -23,7 +23,6 @@ use bearing_dynamics::motion::simulation::{Simulation, SimulationError, Start};
 use bearing_dynamics::motion::stability::step_limit;
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
-use bearing_dynamics::motion::unconstrained_axes::check_unconstrained_axes;
 use bearing_dynamics::numeric::profile::Profile;
 use dynamics::*;
 use nalgebra::Vector3;
@@ -149,25 +148,6 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     loose.connections.clear();
     let error = start::at_equilibrium(&loose).unwrap_err();
     assert!(matches!(error, StaticsError::NoEquilibrium { .. }), "{error}");
-    assert!(check_unconstrained_axes(&assembly).is_ok());
-    assert!(matches!(check_unconstrained_axes(&loose), Err(StaticsError::Unheld { .. })));
-    // A spring holds along its own axes, whatever it does along others.
-    for axis in 0..3 {
-        let mut alone = assembly.clone();
-        let Law::SpringDashpot(law) = &mut alone.connections[0].law else { panic!() };
-        (0..3).filter(|i| *i != axis).for_each(|i| law.stiffness[i] = 0.0);
-        let across = (axis + 1) % 3;
-        let push = |alone: &mut Assembly, i: usize, load: f64| {
-            alone.bodies[0].driven_mut().unwrap().drives[i] = Drive::Load(Profile::Constant(load));
-        };
-        (0..3).filter(|i| *i != axis).for_each(|i| push(&mut alone, i, 0.0));
-        assert!(check_unconstrained_axes(&alone).is_ok(), "{axis}");
-        push(&mut alone, across, 1.0);
-        assert!(
-            matches!(check_unconstrained_axes(&alone), Err(StaticsError::Unheld { .. })),
-            "{axis}"
-        );
-    }
     let mut system = System::new(assembly.clone(), Kernel::Simd);
     let mut rates = vec![0.0; state.len()];
     system.evaluate(0.0, &state, &mut rates);
@@ -188,18 +168,16 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
 
 /// The step of a stiff spring between bodies is bound by it, and said so.
 #[test]
-fn a_stiff_connection_binds_the_step_by_name() {
+fn a_stiff_connection_binds_the_step() {
     let connection = spring();
-    for (spring, expected) in
-        [(true, "spring between bodies: oscillation"), (false, "dashpot between bodies: motion")]
-    {
+    for (spring, expected) in [(true, "oscillation at "), (false, "decay at ")] {
         let assembly = on_two_bodies(connection.clone(), spring);
         let state = start::nominal(&assembly);
         let mut system = System::new(assembly.clone(), Kernel::Simd);
         let limit = step_limit(&mut system, 0.0, &state).unwrap();
-        assert!(limit.reason().starts_with(expected), "{}", limit.reason());
-        // Nothing was taken out for good.
-        assert_eq!(system.assembly, assembly);
+        let reason = limit.reason(&assembly);
+        assert!(reason.starts_with(expected), "{reason}");
+        assert!(assembly.bodies.iter().any(|body| reason.contains(&body.name)), "{reason}");
         // The period of two masses on the spring, 2.83/ω of Runge-Kutta.
         if spring {
             let mass = assembly.bodies[0].inertia().unwrap().mass;

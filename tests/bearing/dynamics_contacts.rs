@@ -23,7 +23,6 @@ use proptest::prelude::*;
 pub struct Choice {
     angular: bool,
     traction: usize,
-    heathcote: bool,
     damping: usize,
     cage: usize,
     cylindrical: bool,
@@ -33,12 +32,12 @@ pub struct Choice {
 }
 
 fn any_choice() -> impl Strategy<Value = Choice> {
-    let laws = (0..5usize, any::<bool>(), 0..3usize);
+    let laws = (0..4usize, 0..3usize);
     let cages = (0..4usize, any::<bool>(), any::<bool>());
     (any::<bool>(), laws, cages, any::<bool>()).prop_map(|(angular, laws, cages, crowded)| {
-        let (traction, heathcote, damping) = laws;
+        let (traction, damping) = laws;
         let (cage, cylindrical, hertz) = cages;
-        Choice { angular, traction, heathcote, damping, cage, cylindrical, hertz, crowded }
+        Choice { angular, traction, damping, cage, cylindrical, hertz, crowded }
     })
 }
 
@@ -53,7 +52,6 @@ impl Choice {
         problem.inner = free_race();
         problem.outer = Some(free_race());
         problem.traction = traction_laws()[self.traction].clone();
-        problem.heathcote = self.heathcote;
         problem.damping = [
             ContactDamping::None,
             ContactDamping::HuntCrossley { alpha: 0.3 },

@@ -197,18 +197,16 @@ fn steps_a_hundred_times_the_explicit_limit_are_stable() {
     let limit = 1.75e-7;
     let explicit = started(&rolling(), Integrator::RungeKutta, Stepping::FractionOfLimit(1.0));
     assert!((explicit.step_size / limit - 1.0).abs() <= 0.02, "{}", explicit.step_size);
-    for problem in [rolling(), DynamicProblem { heathcote: true, ..rolling() }] {
-        let step = 100.0 * limit;
-        let mut simulation = started(&problem, Integrator::Rosenbrock, Stepping::Fixed(step));
-        let start = inner_state(&simulation).position;
-        for _ in 0..2000 {
-            simulation.step().unwrap();
-        }
-        // It moves by its varying compliance, tens of nanometres.
-        let now = inner_state(&simulation).position;
-        let moved = largest_difference(&[now], &[start]);
-        assert!(moved <= 1e-7, "{moved:e}");
+    let step = 100.0 * limit;
+    let mut simulation = started(&rolling(), Integrator::Rosenbrock, Stepping::Fixed(step));
+    let start = inner_state(&simulation).position;
+    for _ in 0..2000 {
+        simulation.step().unwrap();
     }
+    // It moves by its varying compliance, tens of nanometres.
+    let now = inner_state(&simulation).position;
+    let moved = largest_difference(&[now], &[start]);
+    assert!(moved <= 1e-7, "{moved:e}");
 }
 
 /// Rows of the history of the blow up to 1.2 ms: later the race, thrown back, loses contacts.

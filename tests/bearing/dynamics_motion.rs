@@ -258,7 +258,6 @@ fn a_free_bearing_keeps_its_momentum() {
     problem.outer = Some(free_race());
     problem.cage = Some(cage(&geometry, Pocket::Spherical, Guidance::InnerRace));
     problem.traction = CONSTANT;
-    problem.heathcote = true;
     problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
     let state = random_state(&problem, 11);
     let (momentum, angular) = momenta(&problem, &state);
@@ -280,7 +279,6 @@ fn lost_kinetic_energy_is_in_the_ledger() {
     problem.inner = free_race();
     problem.cage = Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace));
     problem.traction = CONSTANT;
-    problem.heathcote = true;
     problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
     let layout = Layout::new(8, true);
     let mut state = start::nominal(&problem.assembly());

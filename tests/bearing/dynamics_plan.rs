@@ -139,7 +139,6 @@ fn no_traction_equals_a_coefficient_of_zero() {
         TractionLaw::SlideToRoll { curve: flat, entrainment_floor: 0.01 },
         TractionLaw::SlipSpeed { curve: flat },
         TractionLaw::Constant { coefficient: 0.0, regularisation_speed: 0.05 },
-        TractionLaw::Table { points: vec![[0.0, 0.0], [1.0, 0.0]] },
     ];
     for traction in zeros {
         let mut other = one.clone();
@@ -149,36 +148,12 @@ fn no_traction_equals_a_coefficient_of_zero() {
 }
 
 #[test]
-fn plane_contact_equals_heathcote_without_curvature() {
-    let one = at_work(8, 2);
-    let mut other = one.clone();
-    other.heathcote = true;
-    let ends = [false, true].map(|flattened| {
-        let problem = if flattened { &other } else { &one };
-        let mut simulation = simulation(problem, STEP, Start::Equilibrium);
-        assert_eq!(simulation.system.sets[0].laws.curvature != [0.0; 2], flattened);
-        simulation.system.sets[0].laws.curvature = [0.0; 2];
-        run(&mut simulation, 300);
-        simulation.state
-    });
-    assert_eq!(value_bits(&ends[0]), value_bits(&ends[1]));
-    // And it is not left out by mistake.
-    let curved = after(&other, 300).state;
-    assert_ne!(value_bits(&ends[0]), value_bits(&curved));
-}
-
-#[test]
 fn no_damping_equals_a_factor_of_zero() {
     let mut one = at_work(8, 1);
     one.damping = ContactDamping::None;
-    for damping in [
-        ContactDamping::HuntCrossley { alpha: 0.0 },
-        ContactDamping::LankaraniNikravesh { restitution: 1.0, slowest: 1e-3 },
-    ] {
-        let mut other = one.clone();
-        other.damping = damping;
-        check_twins(&one, &other);
-    }
+    let mut other = one.clone();
+    other.damping = ContactDamping::HuntCrossley { alpha: 0.0 };
+    check_twins(&one, &other);
 }
 
 #[test]
@@ -239,11 +214,10 @@ fn difference(problem: &DynamicProblem, a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn both_drivers_run_with_the_same_bits() {
-    for law in 0..5 {
+    for law in 0..4 {
         for balls in [7, 8, 9, 11, 16] {
             // Sixteen balls of this size need a wider pitch.
             let mut problem = at_work(balls, law);
-            problem.heathcote = law == 3;
             problem.points_across = 1 + law % 3;
             problem.cage = Some(cage(&problem.geometry, Pocket::Cylindrical, Guidance::OuterRace));
             problem.gravity = GRAVITY;
@@ -276,7 +250,7 @@ fn simulations_side_by_side_have_the_bits_of_one_alone() {
 
 #[test]
 fn going_on_from_a_state_changes_no_bit() {
-    for law in 0..5 {
+    for law in 0..4 {
         let mut problem = at_work(8, law);
         problem.cage = Some(cage(&problem.geometry, Pocket::Spherical, Guidance::InnerRace));
         problem.outer = Some(free_race());

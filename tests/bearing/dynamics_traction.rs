@@ -6,7 +6,7 @@ use crate::common;
 use crate::dynamics;
 
 use bearing_dynamics::assembly::loads::{DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, Layout, Ledger, SPIN, VELOCITY};
+use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::motion::start;
@@ -72,7 +72,6 @@ fn pure_spin_of_a_ball_is_braked_by_three_eighths() {
 fn slices_converge_where_the_whole_contact_slides() {
     // Rolling, sliding and spinning at once, away from the corner of pure spin.
     let (mut problem, layout, mut state) = preloaded(CONSTANT);
-    problem.heathcote = true;
     let mut ball = layout.ball_state(&state, 0);
     ball.spin = [300.0, 80.0, 40.0];
     ball.velocity = [0.02, 0.1, 0.2];
@@ -102,27 +101,6 @@ fn slices_converge_where_the_whole_contact_slides() {
         (force - fine.0).norm() / fine.0.norm() + (moment - fine.1).norm() / fine.1.norm()
     });
     assert!(errors[0] <= 1e-5 && errors[1] <= 1e-2 * errors[0] && errors[2] <= 1e-10, "{errors:?}");
-}
-
-#[test]
-fn heathcote_brakes_a_ball_that_rolls_without_slip_in_the_middle() {
-    let (mut problem, layout, _) = preloaded(CONSTANT);
-    problem.inner.rotation = Rotation::Speed(Profile::Constant(1000.0 * RPM));
-    let state = start::nominal(&problem.assembly());
-    let mut braking = |heathcote: bool| {
-        problem.heathcote = heathcote;
-        let (system, rates) = evaluated(&problem, Kernel::Simd, 0.0, &state);
-        let power = rates[layout.ledger_entry(Ledger::Traction)];
-        (system.sets[0].laws.curvature, power)
-    };
-    let (flat, without) = braking(false);
-    let (curved, with) = braking(true);
-    assert_eq!(flat, [0.0; 2]);
-    // R = 2 r_g r_b/(r_g + r_b), 6.0 mm for the inner groove.
-    let radius =
-        2.0 * 6.013e-3 * problem.geometry.ball_radius / (6.013e-3 + problem.geometry.ball_radius);
-    assert!((2.0 * radius * curved[0] - 1.0).abs() <= 1e-14);
-    assert!(with < 0.0 && with < 10.0 * without, "{with} W with, {without} W without");
 }
 
 #[test]

@@ -54,7 +54,6 @@ fn everything() -> DynamicProblem {
     let geometry = table_4_1(-20e-6);
     let mut all = bearing(geometry, [50.0, 0.0, -800.0, 0.0, 0.0], 1000.0 * RPM);
     all.traction = CONSTANT;
-    all.heathcote = true;
     all.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
     all.gravity = GRAVITY;
     all.cage = Some(cage(&geometry, Pocket::Cylindrical, Guidance::OuterRace));
@@ -114,10 +113,9 @@ fn with_ring() -> Assembly {
 type Change = fn(&mut Assembly);
 
 /// Features, each taken out of an assembly that has all.
-const WITHOUT: [(&str, Change); 16] = [
+const WITHOUT: [(&str, Change); 15] = [
     ("nothing", |_| {}),
     ("traction", |a| a.bearings[0].traction = TractionLaw::None),
-    ("a curved surface", |a| a.bearings[0].heathcote = false),
     ("damping", |a| a.bearings[0].damping = ContactDamping::None),
     ("a guide", |a| {
         if let Some(cage) = &mut a.bearings[0].cage {

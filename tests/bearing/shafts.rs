@@ -365,14 +365,13 @@ fn a_soft_foundation_carries_everything_above_it() {
     }
 }
 
-/// Two bearings that share nothing go as each of them goes alone, to the bit: each has its own history of which
-/// contact began at which speed.
+/// Two bearings that share nothing go as each of them goes alone, to the bit.
 #[test]
-fn bearings_side_by_side_have_histories_of_damping_of_their_own() {
+fn bearings_side_by_side_go_as_each_alone() {
     let alone = |geometry, loads| {
         let mut problem = bearing(geometry, loads, 1000.0 * RPM);
         problem.gravity = GRAVITY;
-        problem.damping = ContactDamping::LankaraniNikravesh { restitution: 0.8, slowest: 1e-3 };
+        problem.damping = ContactDamping::HuntCrossley { alpha: 0.3 };
         problem.assembly()
     };
     // Loose, so that contacts come and go: eight balls under a radial load, eleven under one of another direction.
@@ -383,29 +382,15 @@ fn bearings_side_by_side_have_histories_of_damping_of_their_own() {
     let end = |assembly: &Assembly| {
         let mut simulation =
             Simulation::new(assembly.clone(), fixed_step(1e-6, Start::Nominal)).unwrap();
-        let mut histories: Vec<Vec<Vec<f64>>> = vec![Vec::new(); assembly.bearings.len()];
         for _ in 0..600 {
             simulation.step().unwrap();
-            for (history, set) in histories.iter_mut().zip(&simulation.system.sets) {
-                history.push(set.damping.clone());
-            }
         }
-        let bodies: Vec<Vec<f64>> = (0..assembly.bodies.len())
+        (0..assembly.bodies.len())
             .map(|body| simulation.system.places.body(body))
             .map(|at| simulation.state[at..at + 13].to_vec())
-            .collect();
-        (bodies, histories)
+            .collect::<Vec<_>>()
     };
     let [first, second] = ones.each_ref().map(&end);
-    // Damping that is there after a step and was not, or the other way round.
-    let changes = |history: &[Vec<f64>]| -> usize {
-        let differ =
-            |pair: &[Vec<f64>]| pair[0].iter().zip(&pair[1]).filter(|(a, b)| a != b).count();
-        history.windows(2).map(differ).sum()
-    };
-    for one in [&first, &second] {
-        assert!(changes(&one.1[0]) > 10, "{}", changes(&one.1[0]));
-    }
     for order in [[0, 1], [1, 0]] {
         let mut both = ones[order[0]].clone();
         let offset = both.bodies.len();
@@ -418,12 +403,11 @@ fn bearings_side_by_side_have_histories_of_damping_of_their_own() {
         }
         both.bodies.extend(other.bodies);
         both.bearings.extend(other.bearings);
-        let (bodies, histories) = end(&both);
+        let bodies = end(&both);
         let expected = order.map(|index| [&first, &second][index]);
         for (side, expected) in expected.into_iter().enumerate() {
-            let own = &bodies[side * offset..][..expected.0.len()];
-            assert!(histories[side] == expected.1[0], "{order:?} {side}");
-            assert_eq!(own, expected.0, "{order:?} {side}");
+            let own = &bodies[side * offset..][..expected.len()];
+            assert_eq!(own, expected, "{order:?} {side}");
         }
     }
 }

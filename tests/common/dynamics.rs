@@ -58,7 +58,6 @@ pub fn bearing(geometry: BearingGeometry, loads: [f64; 5], speed: f64) -> Dynami
         traction: TractionLaw::None,
         slices: 15,
         points_across: 1,
-        heathcote: false,
         damping: ContactDamping::None,
         dents: Vec::new(),
         ball_contact: Some(ball_law(&geometry)),
@@ -111,7 +110,6 @@ pub fn traction_laws() -> Vec<TractionLaw> {
         CONSTANT,
         TractionLaw::SlideToRoll { curve: ExponentialCurve::BOUNDARY, entrainment_floor: 0.01 },
         TractionLaw::SlipSpeed { curve: ExponentialCurve { b: 0.5, c: 8.0, d: 0.1 } },
-        TractionLaw::Table { points: vec![[0.0, 0.0], [0.1, 0.08], [1.0, 0.05]] },
     ]
 }
 

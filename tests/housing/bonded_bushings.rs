@@ -394,7 +394,6 @@ fn a_resumed_run_has_the_same_bits() {
             stopped: Stopped::Interrupted,
             error: None,
             seconds: 0.0,
-            mean_steps: None,
         };
         state::save(folder.path(), &mut first, &record).unwrap();
         let file = state::read(folder.path()).unwrap().unwrap();

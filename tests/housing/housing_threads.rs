@@ -83,13 +83,7 @@ fn neither_threads_nor_a_break_change_a_bit() {
     let folder = tempfile::tempdir().unwrap();
     let mut first = run(parts(1), 3e-5);
     let fingerprint = state::fingerprint(&Parts::Housed(Box::new(parts(1))), &request(3e-5));
-    let record = StateRecord {
-        fingerprint,
-        stopped: Stopped::Complete,
-        error: None,
-        seconds: 0.0,
-        mean_steps: None,
-    };
+    let record = StateRecord { fingerprint, stopped: Stopped::Complete, error: None, seconds: 0.0 };
     state::save(folder.path(), &mut first, &record).unwrap();
     let kept = state::read(folder.path()).unwrap().expect("a state");
     let two = Parts::Housed(Box::new(parts(2)));

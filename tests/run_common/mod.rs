@@ -37,7 +37,6 @@ pub fn frictionless() -> DynamicProblem {
         traction: TractionLaw::None,
         slices: 15,
         points_across: 1,
-        heathcote: false,
         damping: ContactDamping::None,
         dents: Vec::new(),
         ball_contact: Some(BallContactLaw {
@@ -98,8 +97,7 @@ pub fn complete() -> DynamicProblem {
         },
         slices: 5,
         points_across: 1,
-        heathcote: false,
-        damping: ContactDamping::LankaraniNikravesh { restitution: 0.9, slowest: 0.1 },
+        damping: ContactDamping::HuntCrossley { alpha: 0.9 },
         unbalance: 1e-4,
         ..frictionless()
     }
@@ -109,11 +107,7 @@ pub fn complete() -> DynamicProblem {
 /// time the speed of approach becomes history.
 pub fn rattling() -> DynamicProblem {
     let geometry = common::table_4_1(3e-6);
-    DynamicProblem {
-        geometry,
-        damping: ContactDamping::LankaraniNikravesh { restitution: 0.95, slowest: 5e-3 },
-        ..complete()
-    }
+    DynamicProblem { geometry, damping: ContactDamping::HuntCrossley { alpha: 0.3 }, ..complete() }
 }
 
 /// The inner race's motion given, with corners off every grid of steps and rows, two of them in one

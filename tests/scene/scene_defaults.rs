@@ -70,7 +70,6 @@ fn a_default_of_the_table_is_the_one_in_use() {
         let text = format!("{BEARING}{lines}[numerics]\nend = \"1 s\"\n");
         ("laws.json".to_string(), toml::from_str(&text).unwrap())
     };
-    trees.push(base("[contact_damping]\nlaw = \"lankarani-nikravesh\"\nrestitution = 0.9\n"));
     trees.push(base("[traction]\nlaw = \"slide-to-roll\"\n"));
     trees.push(base(
         "[inner_race.rotating_load]\nforce = \"1 N\"\nspeed = \"50 rpm\"\n[outer_race]\nmotion = \"6-dof\"\n",

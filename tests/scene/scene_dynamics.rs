@@ -296,14 +296,10 @@ fn laws_take_their_coefficients() {
         law("law = \"constant\"\ncoefficient = 0.05\nregularisation_speed = \"20 mm/s\""),
         TractionLaw::Constant { coefficient: 0.05, regularisation_speed: 0.02 }
     );
-    assert_eq!(
-        law("law = \"table\"\npoints = [[\"0 m/s\", 0], [\"0.1 m/s\", 0.05]]"),
-        TractionLaw::Table { points: vec![[0.0, 0.0], [0.1, 0.05]] }
-    );
     // Off is off, whatever else is given.
     assert_eq!(law("law = \"none\"\ncoefficient = 0.05\nb = 1"), TractionLaw::None);
-    let lines = "[contact_damping]\nlaw = \"lankarani-nikravesh\"\nrestitution = 0.9";
-    let damping = ContactDamping::LankaraniNikravesh { restitution: 0.9, slowest: 1e-3 };
+    let lines = "[contact_damping]\nlaw = \"hunt-crossley\"\nalpha = \"0.1 s/m\"";
+    let damping = ContactDamping::HuntCrossley { alpha: 0.1 };
     assert_eq!(problem(lines).damping, damping);
 }
 

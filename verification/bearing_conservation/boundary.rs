@@ -96,7 +96,7 @@ pub(super) fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         );
         rows.push(vec![
             name.to_string(),
-            limit.reason(),
+            limit.reason(&problem.assembly()),
             format!("{:.3}", 1e6 * limit.step),
             format!("{:.3}", 1e6 * observed),
             format!("{:.3}", observed / limit.step),

@@ -78,7 +78,6 @@ pub fn moving(
         traction: TractionLaw::None,
         slices: 15,
         points_across: 1,
-        heathcote: false,
         damping: ContactDamping::None,
         dents: Vec::new(),
         ball_contact: Some(BallContactLaw {

@@ -104,7 +104,6 @@ fn of_bearing(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Ve
     let mut items = vec![
         Item::does(Stage::DistanceTest, subject, why).costing(2 * balls as u64),
         traction(bearing, subject),
-        heathcote(bearing, subject),
         contact_damping(bearing, subject),
     ];
     items.extend(dents(bearing, subject));
@@ -251,7 +250,6 @@ fn traction(bearing: &Bearing, subject: Subject) -> Item {
         TractionLaw::Constant { .. } => "constant coefficient",
         TractionLaw::SlideToRoll { .. } => "exponential in the slide-to-roll ratio",
         TractionLaw::SlipSpeed { .. } => "exponential in the sliding speed",
-        TractionLaw::Table { .. } => "tabulated over the sliding speed",
     };
     let slices = bearing.slices;
     let across = match bearing.points_across {
@@ -262,27 +260,13 @@ fn traction(bearing: &Bearing, subject: Subject) -> Item {
     Item::does(Stage::Traction, subject, why)
 }
 
-fn heathcote(bearing: &Bearing, subject: Subject) -> Item {
-    let (does, why) = match (bearing.heathcote, &bearing.traction) {
-        (_, TractionLaw::None) => (false, "no slices"),
-        (true, _) => (true, "asked for (Heathcote slip)"),
-        (false, _) => (false, "not asked for: slices lie in a plane"),
-    };
-    Item::new(Stage::CurvedSurface, subject, does, why)
-}
-
 fn contact_damping(bearing: &Bearing, subject: Subject) -> Item {
     let why = match bearing.damping {
         ContactDamping::None => {
-            let why = "law none: no damping force, no contact history";
+            let why = "law none: no damping force";
             return Item::skips(Stage::ContactDamping, subject, why);
         }
-        ContactDamping::HuntCrossley { .. } => {
-            "Hunt-Crossley, of the present speed: no contact history"
-        }
-        ContactDamping::LankaraniNikravesh { .. } => {
-            "Lankarani-Nikravesh; the speed of approach is kept, once a step"
-        }
+        ContactDamping::HuntCrossley { .. } => "Hunt-Crossley, of the present speed",
     };
     let pairs = 2 * bearing.geometry.ball_count as u64;
     Item::does(Stage::ContactDamping, subject, why).costing(pairs)

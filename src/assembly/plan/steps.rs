@@ -10,7 +10,6 @@ use crate::members::unbalance::swings;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BearingSteps {
     pub traction: bool,
-    pub curved: bool,
     pub damping: bool,
     pub dents: bool,
     pub pockets: bool,
@@ -52,7 +51,6 @@ impl Steps {
             let of = |stage| of(stage, Subject::Bearing(index));
             BearingSteps {
                 traction: of(Stage::Traction),
-                curved: of(Stage::CurvedSurface),
                 damping: of(Stage::ContactDamping),
                 dents: of(Stage::Dents),
                 pockets: of(Stage::Pockets),

@@ -112,13 +112,6 @@ pub enum ContactDamping {
     HuntCrossley {
         alpha: f64,
     },
-    /// Lankarani and Nikravesh (1990): F = K δ^{3/2}(1 + 3(1 − e²)/(4 v₀) δ̇), v₀ the speed of
-    /// approach when the contact began and e the coefficient of restitution. A contact that begins
-    /// at rest takes `slowest` (m/s) as its v₀.
-    LankaraniNikravesh {
-        restitution: f64,
-        slowest: f64,
-    },
 }
 
 /// What a contact between a ball and one race needs to know.

@@ -135,13 +135,12 @@ pub fn sliding(
 }
 
 /// What the slices add up to, per unit of normal load: traction on the ball along t and s, moment
-/// about n and, from the curvature of the contact, about t and s (m), and power lost (m/s).
+/// about n (m), and power lost (m/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliceSum {
     pub rolling: f64,
     pub transverse: f64,
     pub moment: f64,
-    pub curvature_moment: [f64; 2],
     pub power: f64,
 }
 
@@ -151,26 +150,17 @@ pub struct SliceSum {
 pub type TractionSlope = [f64; 6];
 
 /// Where in a contact slip is looked at, m from its middle: along the rolling direction and across it (s).
-/// `sagitta` is how far the curved contact surface lies towards the ball there (Heathcote), zero for a plane one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactPoint {
     pub x: f64,
     pub y: f64,
-    pub sagitta: f64,
 }
 
-/// Slip at a point of a contact, from that of its middle: t and s part, m/s. Without `ACROSS` its `x` is zero and not looked at.
+/// Slip at a point of a contact, from that of its middle and the relative spin about n: t and s part, m/s. Without `ACROSS` its `x` is zero and not looked at.
 #[inline(always)]
-fn slip_at<const ACROSS: bool>(
-    slip: [f64; 2],
-    relative_spin: Vec3,
-    point: ContactPoint,
-) -> [f64; 2] {
-    let ContactPoint { x, y, sagitta } = point;
-    let [spin_t, spin_s, spin_n] = relative_spin;
-    let slip_s = slip[1] + spin_t * sagitta;
-    let slip_s = if ACROSS { slip_s + spin_n * x } else { slip_s };
-    [slip[0] - spin_n * y - spin_s * sagitta, slip_s]
+fn slip_at<const ACROSS: bool>(slip: [f64; 2], spin: f64, point: ContactPoint) -> [f64; 2] {
+    let ContactPoint { x, y } = point;
+    [slip[0] - spin * y, if ACROSS { slip[1] + spin * x } else { slip[1] }]
 }
 
 /// Adds what a point with a `share` of the load resists with. `friction` gives its
@@ -180,13 +170,13 @@ fn slip_at<const ACROSS: bool>(
 pub fn add_slice<const ACROSS: bool>(
     sum: &SliceSum,
     slip: [f64; 2],
-    relative_spin: Vec3,
+    spin: f64,
     point: ContactPoint,
     share: f64,
     friction: impl Fn(f64, f64) -> Resistance,
 ) -> SliceSum {
-    let ContactPoint { x, y, sagitta } = point;
-    let [slip_t, slip_s] = slip_at::<ACROSS>(slip, relative_spin, point);
+    let ContactPoint { x, y } = point;
+    let [slip_t, slip_s] = slip_at::<ACROSS>(slip, spin, point);
     let [per_speed, power] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let along = -per_speed * slip_t;
     let across = -per_speed * slip_s;
@@ -196,11 +186,6 @@ pub fn add_slice<const ACROSS: bool>(
         transverse: sum.transverse + across,
         // (x t + y s) × (along t + across s) = (x across − y along) n.
         moment: if ACROSS { moment + x * across } else { moment },
-        // −sagitta n × (along t + across s), the moment that brakes the ball (Heathcote).
-        curvature_moment: [
-            sum.curvature_moment[0] + sagitta * across,
-            sum.curvature_moment[1] - sagitta * along,
-        ],
         power: sum.power - power,
     }
 }
@@ -211,13 +196,13 @@ pub fn add_slice<const ACROSS: bool>(
 pub fn add_slope<const ACROSS: bool>(
     sum: &TractionSlope,
     slip: [f64; 2],
-    relative_spin: Vec3,
+    spin: f64,
     point: ContactPoint,
     share: f64,
     friction: impl Fn(f64, f64) -> Steepness,
 ) -> TractionSlope {
-    let ContactPoint { x, y, .. } = point;
-    let [slip_t, slip_s] = slip_at::<ACROSS>(slip, relative_spin, point);
+    let ContactPoint { x, y } = point;
+    let [slip_t, slip_s] = slip_at::<ACROSS>(slip, spin, point);
     let [secant, steep] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let tt = secant + steep * slip_t * slip_t;
     let ts = steep * slip_t * slip_s;
@@ -237,7 +222,7 @@ pub fn add_slope<const ACROSS: bool>(
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TractionForce {
     pub force: Vec3,
-    /// Moment about the contact point, N·m: about the normal, if the contact is plane.
+    /// Moment about the normal, N·m.
     pub moment: Vec3,
     /// Power taken from the bodies, W, ≤ 0.
     pub power: f64,
@@ -251,33 +236,27 @@ pub fn traction_force(
     normal_load: f64,
 ) -> TractionForce {
     let rolling = scale(sliding.rolling_direction, sum.rolling * normal_load);
-    let [about_t, about_s] = sum.curvature_moment;
-    let about_normal = scale(normal, sum.moment * normal_load);
-    let braking = add_scaled(about_normal, about_t * normal_load, sliding.rolling_direction);
     TractionForce {
         force: add_scaled(rolling, sum.transverse * normal_load, sliding.transverse_direction),
-        moment: add_scaled(braking, about_s * normal_load, sliding.transverse_direction),
+        moment: scale(normal, sum.moment * normal_load),
         power: sum.power * normal_load,
     }
 }
 
-/// Contact ellipse of a pair and its surface.
+/// Contact ellipse of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// m.
     pub semi_major: f64,
     /// Along the rolling direction, m. In the middle of a slice it does not count.
     pub semi_minor: f64,
-    /// 1/(2R) of the deformed surface across the groove (1/m), zero leaves the Heathcote term out.
-    pub curvature: f64,
 }
 
 impl Patch {
     /// Place of a point given by parts of the half axes.
     #[inline(always)]
     pub fn point(&self, middle: f64, offset: f64) -> ContactPoint {
-        let y = middle * self.semi_major;
-        ContactPoint { x: offset * self.semi_minor, y, sagitta: y * y * self.curvature }
+        ContactPoint { x: offset * self.semi_minor, y: middle * self.semi_major }
     }
 }
 
@@ -296,7 +275,8 @@ pub fn integrate(law: &TractionLaw, slices: &Slices, sliding: &Sliding, patch: &
     for (middle, offset, share) in slices.points() {
         let point = patch.point(middle, offset);
         let friction = |square, share| resistance_of(law, square, share, sliding.entrainment);
-        sum = add_slice::<true>(&sum, sliding.slip, sliding.relative_spin, point, share, friction);
+        sum =
+            add_slice::<true>(&sum, sliding.slip, sliding.relative_spin[2], point, share, friction);
     }
     sum
 }
@@ -312,7 +292,8 @@ pub fn integrate_slope(
     for (middle, offset, share) in slices.points() {
         let point = patch.point(middle, offset);
         let friction = |square, share| steepness_of(law, square, share, sliding.entrainment);
-        sum = add_slope::<true>(&sum, sliding.slip, sliding.relative_spin, point, share, friction);
+        sum =
+            add_slope::<true>(&sum, sliding.slip, sliding.relative_spin[2], point, share, friction);
     }
     sum
 }

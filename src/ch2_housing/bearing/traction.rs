@@ -16,8 +16,6 @@ pub enum TractionLaw {
     SlideToRoll { curve: ExponentialCurve, entrainment_floor: f64 },
     /// Exponential in the sliding speed u: κ = (a + b u) e^(−c u) + d.
     SlipSpeed { curve: ExponentialCurve },
-    /// Straight lines between (sliding speed in m/s, κ), constant beyond the last.
-    Table { points: Vec<[f64; 2]> },
 }
 
 /// κ(x) = (a + b x) e^(−c x) + d with a = −d, so that κ(0) = 0.
@@ -96,7 +94,6 @@ pub fn coefficient(law: &TractionLaw, slip: f64, entrainment: f64) -> f64 {
             curve.coefficient(slip * per_entrainment(entrainment, *entrainment_floor))
         }
         TractionLaw::SlipSpeed { curve } => curve.coefficient(slip),
-        TractionLaw::Table { points } => interpolate(points, slip),
     }
 }
 
@@ -113,12 +110,6 @@ pub fn coefficient_and_slope(law: &TractionLaw, slip: f64, entrainment: f64) -> 
             (value, slope * per_rolling)
         }
         TractionLaw::SlipSpeed { curve } => curve.coefficient_and_slope(slip),
-        TractionLaw::Table { points } => {
-            let value = interpolate(points, slip);
-            // Forward, so that the first piece counts at rest.
-            let step = 1e-6 * (slip + 1e-3);
-            (value, (interpolate(points, slip + step) - value) / step)
-        }
     }
 }
 
@@ -181,17 +172,6 @@ pub(super) fn steepness_of(
 #[inline(always)]
 pub fn per_entrainment(entrainment: f64, floor: f64) -> f64 {
     1.0 / if entrainment > floor { entrainment } else { floor }
-}
-
-fn interpolate(points: &[[f64; 2]], slip: f64) -> f64 {
-    let after = points.partition_point(|point| point[0] <= slip);
-    match (after.checked_sub(1).and_then(|i| points.get(i)), points.get(after)) {
-        (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (slip - a[0]) / (b[0] - a[0]),
-        (Some(last), None) => last[1],
-        // Below the first point: in proportion, since there is no friction at rest.
-        (None, Some(first)) => first[1] * slip / first[0],
-        (None, None) => 0.0,
-    }
 }
 
 /// What a slice with a share of the load puts up against sliding, over the load: force over the sliding speed, s/m, and the power

@@ -44,7 +44,7 @@ pub fn run(
         let assembly = scene.assembly()?;
         let mut request = request(scene.common(), &settings);
         if housings.is_empty() {
-            (request, _) = planned_request(&scene, &settings, &assembly, None);
+            (request, _) = planned_request(&scene, &settings, &assembly);
             table_size(assembly.clone(), &request)?;
         }
         made = Some(assembly);

@@ -7,7 +7,7 @@ use super::shapes::{Shapes, shapes};
 use super::windows::windows_text;
 use super::{Fallible, housings, still};
 use crate::commands::plan::say_plan;
-use crate::commands::plan_step::{note, refused, step_lines};
+use crate::commands::plan_step::{note, refused, step_line};
 use crate::commands::run::{self, planned_request};
 use crate::commands::warnings;
 use crate::commands::{CommandResult, Outcome, memory};
@@ -22,7 +22,7 @@ use bearing_dynamics::assembly::plan::statics::ASKED_FOR;
 use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
 use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
 use bearing_dynamics::equilibrium::statics::StaticProblem;
-use bearing_dynamics::motion::foretell::Choice;
+use bearing_dynamics::motion::integrator_choice::Choice;
 use bearing_dynamics::motion::simulation::Start;
 use bearing_dynamics::numeric::clock::{rounded, to_digits, whole_number};
 use bearing_dynamics::output::fields::size::{fields_size, file_bytes};
@@ -112,12 +112,12 @@ fn of_steps(
     let (request, choice) = if in_elements {
         (run::request(scene.common(), settings), None)
     } else {
-        planned_request(scene, settings, &assembly, None)
+        planned_request(scene, settings, &assembly)
     };
     let items = stages(scene, (housings, elements), &assembly, &request, choice.as_ref());
     let mut notes = Vec::new();
     if alone {
-        notes.extend(step_lines(&assembly, &request));
+        notes.push(step_line(&assembly, &request));
     }
     if in_elements {
         let parts = housings::explicit(scene, assembly.clone(), housings, elements, 1)?;
@@ -223,7 +223,7 @@ pub fn stages(
         }
     }
     if let Some(choice) = choice {
-        let said = format!("{}: {}", choice.integrator.name(), choice.reason());
+        let said = format!("{}: {}", choice.integrator.name(), choice.reason);
         items.push(Item::does(Stage::IntegratorChoice, Subject::Whole, said));
     }
     items

@@ -189,17 +189,12 @@ fn of_bearing(simulation: &Simulation, table: &RunTable, lines: &mut Lines) {
         let most = largest(table, "energy_residual").max(simulation.largest_residual());
         line("energy unaccounted for", format!("{most:.3e} J at most"));
     }
-    if let Some(shortened) = simulation.step_watch.shortened {
+    let shortened = simulation.step_watch.shortened;
+    if shortened > 0 {
+        let size = simulation.step_size;
         line(
             "step",
-            format!(
-                "shortened {} times where contacts got stiffer, from {:.4e} s to {:.4e} s, last at \
-                 t = {} s",
-                shortened.times,
-                shortened.from,
-                simulation.step_size,
-                display_time(shortened.last)
-            ),
+            format!("shortened {shortened} times where contacts got stiffer, to {size:.4e} s"),
         );
     }
 }

@@ -12,7 +12,6 @@ use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
 use super::{Changes, CommandResult, Outcome, interruption, results_folder, say};
 use bearing_dynamics::motion::bonded_bushing::BondedBushing;
 use bearing_dynamics::motion::explicit_solid::SteppedSolid;
-use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateError, StateFile, StateRecord, Stopped};
 use bearing_dynamics::scene::resolve_subject;
@@ -77,7 +76,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let kept = kept_state(arguments, &folder)?;
     let prepared = Prepared::new(&document, &subject)?;
-    let (request, choice) = prepared.request(kept.as_ref())?;
+    let (request, choice) = prepared.request()?;
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
     let interrupted = interruption(|| {})?;
@@ -89,7 +88,6 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         stopped: Stopped::Running,
         error: None,
         seconds: kept.as_ref().map_or(0.0, |file| file.seconds),
-        mean_steps: prepared.told(choice.as_ref()).and_then(|choice| choice.mean_steps),
     };
     let mut session = match &kept {
         Some(file) => match state::resume(&folder, file, parts, &request) {
@@ -156,13 +154,6 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
         )
         .into()),
         End::Failed(error) => {
-            let too_long = session.motion.bearing().and_then(|bearing| bearing.step_watch.exceeded);
-            let too_long = too_long.map_or(String::new(), |[ratio, time]| {
-                format!(
-                    "; the step was {ratio:.3} times the largest stable one at t = {} s",
-                    rounded(time)
-                )
-            });
             let kept = match session.motion {
                 Motion::Bearing(_) => "before that step",
                 Motion::Solid(_)
@@ -170,8 +161,7 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
                 | Motion::QuasiStaticSequence(_)
                 | Motion::Rubber(_) => "at the last row",
             };
-            Err(format!("{error}{too_long}; the rows so far and the state {kept} are in {out}")
-                .into())
+            Err(format!("{error}; the rows so far and the state {kept} are in {out}").into())
         }
     }
 }

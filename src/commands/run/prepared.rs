@@ -10,13 +10,12 @@ use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::assembly::plan::Stage;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::TetMesh;
-use bearing_dynamics::motion::foretell::{Choice, choose};
-use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Start};
+use bearing_dynamics::motion::integrator_choice::{Choice, choose};
+use bearing_dynamics::motion::simulation::{RunOptions, Start};
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{
     CourseParts, Motion, Parts, RubberParts, RunRequest, Session, SolidParts,
 };
-use bearing_dynamics::output::state::{self, StateFile};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
 use bearing_dynamics::scene::build::motion::DynamicsError;
@@ -195,16 +194,16 @@ impl<'s> Prepared<'s> {
     }
 
     /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
-    pub fn request(&self, kept: Option<&StateFile>) -> Fallible<(RunRequest, Option<Choice>)> {
+    pub fn request(&self) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
             Prepared::Bearings { lists, settings, assembly, way, .. } => {
                 let mut request = request(lists.scene.common(), settings);
                 match way {
-                    Way::Rigid => planned(request, settings, assembly, kept),
+                    Way::Rigid => planned(request, settings, assembly),
                     Way::Reduced(_) => {
                         // Where races and housings start is in the assembly.
                         request.options.start = Start::Equilibrium;
-                        planned(request, settings, assembly, kept)
+                        planned(request, settings, assembly)
                     }
                     Way::Explicit | Way::QuasiStaticSequence(..) => (request, None),
                 }
@@ -327,14 +326,6 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// What is told of the plan's choice of a method: with housings nothing, so that a run that is extended has the bytes of an
-    /// unbroken one.
-    pub fn told<'c>(&self, choice: Option<&'c Choice>) -> Option<&'c Choice> {
-        choice.filter(
-            |_| !matches!(self, Prepared::Bearings { housings, .. } if !housings.is_empty()),
-        )
-    }
-
     /// Scene, plan, assumptions and defaults, as every summary has them.
     pub fn record(
         &self,
@@ -344,7 +335,7 @@ impl<'s> Prepared<'s> {
     ) -> Fallible<RunRecord> {
         match self {
             Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, way } => {
-                let (scene, choice) = (lists.scene, self.told(choice));
+                let scene = lists.scene;
                 let planned = match way {
                     Way::QuasiStaticSequence(..) => plan::of_course(lists, housings, settings)?,
                     _ => {
@@ -406,32 +397,19 @@ pub fn planned_request(
     scene: &AssemblyScene,
     settings: &RunSettings,
     assembly: &Assembly,
-    kept: Option<&StateFile>,
 ) -> (RunRequest, Option<Choice>) {
-    planned(request(scene.common(), settings), settings, assembly, kept)
+    planned(request(scene.common(), settings), settings, assembly)
 }
 
-/// A run that goes on does so as it began: a later end may let another integrator look better.
 fn planned(
     mut request: RunRequest,
     settings: &RunSettings,
     assembly: &Assembly,
-    kept: Option<&StateFile>,
 ) -> (RunRequest, Option<Choice>) {
     if !settings.by_plan {
         return (request, None);
     }
-    for integrator in [Integrator::Rosenbrock, Integrator::DormandPrince] {
-        request.options.integrator = integrator;
-        let same = |file: &StateFile| {
-            file.fingerprint == state::fingerprint(&assembly.clone().into(), &request)
-        };
-        if let Some(file) = kept.filter(|file| same(file)) {
-            let choice = Choice::kept(assembly, integrator, file.mean_steps);
-            return (request, Some(choice));
-        }
-    }
-    let choice = choose(assembly, &request);
+    let choice = choose(assembly);
     request.options.integrator = choice.integrator;
     (request, Some(choice))
 }

@@ -8,7 +8,7 @@ use crate::commands::say;
 use crate::commands::warnings::{aliased, of_run};
 use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
-use bearing_dynamics::motion::foretell::Choice;
+use bearing_dynamics::motion::integrator_choice::Choice;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::bore::{bore_nodes, bore_series};

@@ -4,7 +4,7 @@ use super::prepared::{Prepared, Way};
 use bearing_dynamics::motion::bonded_bushing::{BondedBushing, BondedRubber};
 use bearing_dynamics::motion::coupling::Exchange;
 use bearing_dynamics::motion::explicit_solid::SteppedSolid;
-use bearing_dynamics::motion::foretell::Choice;
+use bearing_dynamics::motion::integrator_choice::Choice;
 use bearing_dynamics::motion::simulation::{Integrator, Simulation, Stepping as BearingStepping};
 use bearing_dynamics::numeric::clock::{Clock, given_steps, rounded};
 use bearing_dynamics::output::session::{Motion, MovingRubber, RunRequest, Session};
@@ -65,8 +65,7 @@ fn of_bearing(
 ) -> String {
     let integrator = request.options.integrator.name();
     if let BearingStepping::Accuracy(accuracy) = request.options.stepping {
-        let by_plan =
-            choice.map_or(String::new(), |choice| format!("chosen: {}\n", choice.reason()));
+        let by_plan = choice.map_or(String::new(), |choice| format!("chosen: {}\n", choice.reason));
         return format!(
             "{integrator}, accuracy {accuracy}: steps follow from it, the first of {:.4e} s\n\
              to t = {} s, a row every {:.4e} s\n{by_plan}",
@@ -74,7 +73,11 @@ fn of_bearing(
         );
     }
     let reason = match &simulation.limit {
-        Some(limit) => format!("{} (stable up to {:.4e} s)", limit.reason(), limit.step),
+        Some(limit) => format!(
+            "{} (stable up to {:.4e} s)",
+            limit.reason(&simulation.system.assembly),
+            limit.step
+        ),
         None => match simulation.step_watch.smallest {
             Some(limit) => {
                 format!("given ({:.3} of the largest stable one)", simulation.step_size / limit)
@@ -86,13 +89,7 @@ fn of_bearing(
         Integrator::RungeKutta => String::new(),
         other => format!("{}, ", other.name()),
     };
-    let mut text = format!("{method}step {:.4e} s: {reason}\n", simulation.step_size);
-    if let Some([ratio, time]) = simulation.step_watch.exceeded {
-        text += &format!(
-            "WARNING: the step is {ratio:.3} times the largest stable one at t = {} s\n",
-            rounded(time)
-        );
-    }
+    let text = format!("{method}step {:.4e} s: {reason}\n", simulation.step_size);
     let steps = given_steps(&clock.corners, clock.row_interval(), clock.end, clock.step);
     text + &format!("{steps} steps to t = {} s, {}\n", clock.end, rows(clock, "steps"))
 }

@@ -212,7 +212,7 @@ impl<'p> Motion<'p> {
             (Parts::Bearing(assembly), Checkpoint::Bearing(kept)) => {
                 let simulation = Simulation::from_checkpoint(*assembly, request.options, kept)?;
                 clock.corners = simulation.system.assembly.corners();
-                clock.shortened = simulation.step_watch.shortened.is_some();
+                clock.shortened = simulation.step_watch.shortened > 0;
                 Motion::Bearing(Box::new(simulation))
             }
             (Parts::Solid(parts), Checkpoint::Solid(kept, limit)) => {

@@ -9,8 +9,8 @@ use crate::motion::energy::Energy;
 use crate::motion::energy_ledger::{Balance, ContactTurnover};
 use crate::motion::error_control::Memory;
 use crate::motion::extremes::Extremes;
-use crate::motion::stability::{Cause, StepLimit};
-use crate::motion::step_watch::{Shortened, StepWatch, Stiffness};
+use crate::motion::stability::StepLimit;
+use crate::motion::step_watch::{StepWatch, Stiffness};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -26,8 +26,6 @@ pub struct BearingEntry {
     /// See [`Extremes::to_numbers`].
     pub extremes: Vec<f64>,
     pub state: Vec<f64>,
-    pub damping: Vec<f64>,
-    pub was_loaded: Vec<bool>,
     /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
     pub first_energy: [f64; 6],
     /// Of reduced solids: kinetic, strain, seats, J.
@@ -56,32 +54,20 @@ pub struct LimitEntry {
     pub step: f64,
     /// Real and imaginary part, 1/s.
     pub eigenvalue: [f64; 2],
-    /// As in [`Cause::name`].
-    pub cause: String,
+    /// State entry.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub component: Option<usize>,
 }
 
 /// See [`StepWatch`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepWatchEntry {
-    pub judged: u64,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub smallest: Option<f64>,
     /// Oscillation, 1/s²; decay, 1/s.
     pub stiffest: [f64; 2],
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub exceeded: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub shortened: Option<ShortenedEntry>,
-}
-
-/// See [`Shortened`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ShortenedEntry {
-    pub times: u64,
-    pub from: f64,
-    pub last: f64,
+    pub shortened: u64,
 }
 
 impl BearingEntry {
@@ -95,23 +81,15 @@ impl BearingEntry {
             limit: checkpoint.limit.map(|limit| LimitEntry {
                 step: limit.step,
                 eigenvalue: [limit.eigenvalue.re, limit.eigenvalue.im],
-                cause: limit.cause.name().into(),
+                component: limit.component,
             }),
             step_watch: StepWatchEntry {
-                judged: watch.judged,
                 smallest: watch.smallest,
                 stiffest: [watch.stiffest.oscillation, watch.stiffest.decay],
-                exceeded: watch.exceeded,
-                shortened: watch.shortened.map(|Shortened { times, from, last }| ShortenedEntry {
-                    times,
-                    from,
-                    last,
-                }),
+                shortened: watch.shortened,
             },
             extremes: checkpoint.extremes.iter().flat_map(Extremes::to_numbers).collect(),
             state: checkpoint.state.clone(),
-            damping: checkpoint.damping.clone(),
-            was_loaded: checkpoint.was_loaded.clone(),
             first_energy: [
                 energy.kinetic,
                 energy.contact,
@@ -142,9 +120,7 @@ impl BearingEntry {
         let limit = self.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
         let watch = &self.step_watch;
         let watched = watch.stiffest.into_iter().chain(watch.smallest);
-        let shortened = watch.shortened.into_iter().flat_map(|s| [s.from, s.last]);
-        let limit =
-            limit.chain(watched).chain(watch.exceeded.into_iter().flatten()).chain(shortened);
+        let limit = limit.chain(watched);
         let energy = [self.step_size, self.largest_contact_energy].into_iter();
         let energy =
             energy.chain(self.first_energy).chain(self.contact_turnover).chain(self.ledger.0);
@@ -156,7 +132,6 @@ impl BearingEntry {
             ("a step or an energy", energy.collect()),
             ("a step limit", limit.collect()),
             ("an entry of the state", self.state.clone()),
-            ("a damping factor", self.damping.clone()),
         ]
     }
 
@@ -169,9 +144,6 @@ impl BearingEntry {
     ) -> Result<BearingCheckpoint, Refused> {
         let checkpoint = self.checkpoint(time);
         let damaged = |what| Err(Refused::Damaged(what));
-        if self.limit.as_ref().is_some_and(|limit| cause(&limit.cause).is_none()) {
-            return damaged("its step limit has a cause that is not known");
-        }
         if Extremes::all_from_numbers(&self.extremes).is_none_or(|all| all.is_empty()) {
             return damaged("its extremes are not as many as a bearing has");
         }
@@ -197,27 +169,18 @@ impl BearingEntry {
             time,
             steps: self.steps,
             step_size: self.step_size,
-            limit: self.limit.as_ref().and_then(|limit| {
-                Some(StepLimit {
-                    step: limit.step,
-                    eigenvalue: Complex::new(limit.eigenvalue[0], limit.eigenvalue[1]),
-                    cause: cause(&limit.cause)?,
-                })
+            limit: self.limit.as_ref().map(|limit| StepLimit {
+                step: limit.step,
+                eigenvalue: Complex::new(limit.eigenvalue[0], limit.eigenvalue[1]),
+                component: limit.component,
             }),
             step_watch: StepWatch {
-                judged: self.step_watch.judged,
                 smallest: self.step_watch.smallest,
                 stiffest: Stiffness { oscillation, decay },
-                exceeded: self.step_watch.exceeded,
-                shortened: self
-                    .step_watch
-                    .shortened
-                    .map(|ShortenedEntry { times, from, last }| Shortened { times, from, last }),
+                shortened: self.step_watch.shortened,
             },
             extremes: Extremes::all_from_numbers(&self.extremes).unwrap_or_default(),
             state: self.state.clone(),
-            damping: self.damping.clone(),
-            was_loaded: self.was_loaded.clone(),
             balance: Balance {
                 first: Energy {
                     kinetic,
@@ -255,8 +218,4 @@ impl BearingEntry {
             }),
         }
     }
-}
-
-fn cause(name: &str) -> Option<Cause> {
-    Cause::ALL.into_iter().find(|cause| cause.name() == name)
 }

@@ -74,9 +74,6 @@ pub struct StateFile {
     pub rows_per_fields: Option<u64>,
     /// Wall time so far, s.
     pub seconds: f64,
-    /// Of `rosenbrock` and of `dormand-prince` in the trial that has chosen one of them, s.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub mean_steps: Option<[f64; 2]>,
     /// At the start, turned over, largest residual, J, and rows on end whose ledger did not close; of
     /// runs with a solid.
     pub ledger: ([f64; 3], u32),
@@ -198,8 +195,6 @@ pub struct StateRecord {
     pub stopped: Stopped,
     pub error: Option<String>,
     pub seconds: f64,
-    /// Of the trial that has chosen the integrator, s.
-    pub mean_steps: Option<[f64; 2]>,
 }
 
 /// Writes `series.npy`, arrays and `state.json` of a session into its results folder.
@@ -319,7 +314,6 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
         steps_per_row: clock.steps_per_row,
         rows_per_fields: clock.rows_per_fields,
         seconds: record.seconds,
-        mean_steps: record.mean_steps,
         ledger: ([watch.first, watch.turned_over, watch.largest_residual], watch.open),
         stages: stages(&sound.ran),
         bearing: None,
@@ -371,7 +365,6 @@ fn ran(file: &StateFile) -> Option<StageCounts> {
 fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let single = [file.time, file.step, file.seconds, file.end, file.output_interval];
     let single = single.into_iter().chain(file.ledger.0).chain(file.fields_interval);
-    let single = single.chain(file.mean_steps.into_iter().flatten());
     let mut parts = vec![("time, step or energy", single.collect())];
     if let Some(bearing) = &file.bearing {
         parts.extend(bearing.numbers());

@@ -7,7 +7,6 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::contact_ellipse;
 use crate::motion::extremes::{Extreme, Extremes};
 use crate::motion::simulation::{Simulation, Stepping};
-use crate::numeric::clock::rounded;
 use crate::output::results::{ResultsError, quantity};
 use crate::output::table::RunTable;
 use serde_json::{Map, Value, json};
@@ -52,37 +51,24 @@ pub(super) fn step(simulation: &Simulation, report: &RunReport) -> Part {
     let reason = match (&simulation.limit, report.stepping) {
         (Some(limit), Some(Stepping::FractionOfLimit(fraction))) => {
             step.insert("stability_limit".into(), quantity("limit", limit.step, "s")?);
-            let watch = &simulation.step_watch;
-            let when = match watch.shortened {
-                None => "at the start".into(),
-                Some(shortened) => {
-                    step.insert("shortened".into(), json!(shortened.times));
-                    step.insert("largest".into(), quantity("step", shortened.from, "s")?);
-                    step.insert("smallest".into(), quantity("step", size, "s")?);
-                    format!("at t = {} s, where it was last shortened", rounded(shortened.last))
-                }
+            let shortened = simulation.step_watch.shortened;
+            let when = match shortened {
+                0 => "at the start",
+                _ => "where it was last shortened",
             };
+            step.insert("shortened".into(), json!(shortened));
             format!(
                 "{fraction} of the stability limit {when}, shortened to a whole number of steps an \
                  output interval; {}",
-                limit.reason()
+                limit.reason(&simulation.system.assembly)
             )
         }
-        (Some(limit), _) => limit.reason(),
+        (Some(limit), _) => limit.reason(&simulation.system.assembly),
         (None, _) => "given".into(),
     };
     step.insert("reason".into(), json!(reason));
-    let watch = &simulation.step_watch;
-    step.insert("limit_judged".into(), json!(watch.judged));
-    if let Some(smallest) = watch.smallest {
+    if let Some(smallest) = simulation.step_watch.smallest {
         step.insert("smallest_stability_limit".into(), quantity("limit", smallest, "s")?);
-    }
-    if let Some([ratio, time]) = watch.exceeded {
-        let warning = format!(
-            "the step is {ratio:.3} times the largest stable one at t = {} s; take a shorter one",
-            rounded(time)
-        );
-        step.insert("warning".into(), json!(warning));
     }
     Ok(Value::Object(step))
 }

@@ -19,13 +19,8 @@ const TRACTION_KEYS: &[(&str, &[&str])] = &[
     ("traction.c", &["slide-to-roll", "slip-speed"]),
     ("traction.d", &["slide-to-roll", "slip-speed"]),
     ("traction.entrainment_floor", &["slide-to-roll"]),
-    ("traction.points", &["table"]),
 ];
-const DAMPING_KEYS: &[(&str, &[&str])] = &[
-    ("contact_damping.alpha", &["hunt-crossley"]),
-    ("contact_damping.restitution", &["lankarani-nikravesh"]),
-    ("contact_damping.slowest", &["lankarani-nikravesh"]),
-];
+const DAMPING_KEYS: &[(&str, &[&str])] = &[("contact_damping.alpha", &["hunt-crossley"])];
 
 /// A key of another law or method than the chosen one would have no effect.
 pub(crate) fn refuse_strangers(
@@ -70,7 +65,6 @@ pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
         "slip-speed" => TractionLaw::SlipSpeed {
             curve: curve(reader, 1, "this curve is over the sliding speed, in s/m", "\"20 s/m\"")?,
         },
-        "table" => TractionLaw::Table { points: points(reader, &because)? },
         _ => TractionLaw::None,
     })
 }
@@ -115,19 +109,6 @@ fn curve(
     }
 }
 
-fn points(reader: &Reader, because: &str) -> Result<Vec<[f64; 2]>, SceneError> {
-    let path = "traction.points";
-    let Some(Checked::Curve(points)) = reader.document.value(path) else {
-        return Err(reader.missing(path, because));
-    };
-    if points.first().is_some_and(|first| first[0] == 0.0 && first[1] != 0.0) {
-        let reason = "friction at rest has no direction";
-        let advice = "begin with [\"0 m/s\", 0.0] or with a sliding speed above 0";
-        return Err(reader.document.refused(path, reason, advice));
-    }
-    Ok(points.clone())
-}
-
 pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError> {
     let law = reader.choice("contact_damping.law").unwrap_or("none");
     refuse_strangers(reader, ("law", law), DAMPING_KEYS)?;
@@ -135,10 +116,6 @@ pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError>
     Ok(match law {
         "hunt-crossley" => ContactDamping::HuntCrossley {
             alpha: reader.required_number("contact_damping.alpha", &because)?,
-        },
-        "lankarani-nikravesh" => ContactDamping::LankaraniNikravesh {
-            restitution: reader.required_number("contact_damping.restitution", &because)?,
-            slowest: reader.number("contact_damping.slowest").unwrap_or(1e-3),
         },
         _ => ContactDamping::None,
     })

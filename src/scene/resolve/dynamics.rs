@@ -65,7 +65,6 @@ pub(crate) fn dynamics(
         slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
         // 1 to 9.
         points_across: reader.number("traction.points_across").unwrap_or(1.0) as usize,
-        heathcote: heathcote(reader),
         damping: contact::damping(reader)?,
         ball_friction: contact::ball_friction(reader, balls_meet)?,
         dents: contact::dents(reader, parts.geometry)?,
@@ -93,16 +92,6 @@ pub(crate) fn foundation(reader: &Reader, table: &str, what: &str) -> [f64; 5] {
         let path = format!("{table}.foundation.{what}.{name}");
         reader.given_number(&path).unwrap_or(0.0)
     })
-}
-
-fn heathcote(reader: &mut Reader) -> bool {
-    match reader.document.value("traction.heathcote") {
-        Some(Checked::Boolean(given)) => *given,
-        _ => {
-            reader.note_default("traction.heathcote");
-            false
-        }
-    }
 }
 
 pub(crate) fn rotating_load(

@@ -130,7 +130,6 @@ pub struct Dynamics {
     pub traction: TractionLaw,
     pub slices: usize,
     pub points_across: usize,
-    pub heathcote: bool,
     pub damping: ContactDamping,
     /// Friction coefficient and regularisation speed (m/s) of the contact between balls.
     pub ball_friction: Option<[f64; 2]>,

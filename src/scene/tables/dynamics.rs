@@ -15,8 +15,8 @@ use Need::{Default, Depends, Optional};
 pub const MOTIONS: &[&str] = &["fixed", "5-dof", "6-dof"];
 pub const POCKETS: &[&str] = &["cylindrical", "spherical"];
 pub const CAGE_LAWS: &[&str] = &["penalty", "hertz"];
-pub const TRACTION_LAWS: &[&str] = &["none", "constant", "slide-to-roll", "slip-speed", "table"];
-pub const DAMPING_LAWS: &[&str] = &["none", "hunt-crossley", "lankarani-nikravesh"];
+pub const TRACTION_LAWS: &[&str] = &["none", "constant", "slide-to-roll", "slip-speed"];
+pub const DAMPING_LAWS: &[&str] = &["none", "hunt-crossley"];
 pub const BALL_CONTACT_LAWS: &[&str] = &["none", "hertz"];
 pub const STARTS: &[&str] = &["equilibrium", "nominal"];
 pub const INTEGRATORS: &[&str] = &["rk4", "dormand-prince", "rosenbrock"];
@@ -160,7 +160,7 @@ pub(crate) const KEYS: &[Key] = &[
 
     Key::new("traction.law", Kind::Choice(TRACTION_LAWS),
         Default { value: "slide-to-roll", reason: "the source's friction curve is not printed; its field's usual form is assumed" },
-        "Friction between balls and races: none; a constant coefficient; an exponential curve over slide-to-roll ratio or sliding speed; a table."),
+        "Friction between balls and races: none; a constant coefficient; an exponential curve over slide-to-roll ratio or sliding speed."),
     Key::new("traction.coefficient", FRICTION, LAW_NEEDS, "Friction coefficient of `constant`.").hint(FRICTION_HINT).example_of("0.05"),
     quantity("traction.regularisation_speed", SLIP, LAW_NEEDS, "Sliding speed below which `constant` is rounded off.").hint(SLIP_HINT),
     Key::new("traction.b", CURVE_RISE, BOUNDARY,
@@ -170,24 +170,15 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("traction.entrainment_floor", SLIP,
         Default { value: "0.01 m/s", reason: "the slide-to-roll ratio is singular at rest" },
         "Least entrainment speed that `slide-to-roll` divides by.").hint(SLIP_HINT),
-    Key::new("traction.points", Kind::Curve(Speed, closed(0.0, 1e4, "m/s"), closed(0.0, 2.0, "")), LAW_NEEDS,
-        "Sliding speeds and friction coefficients of `table`; in proportion below the first, constant above the last.").hint(FRICTION_HINT),
     Key::new("traction.slices", Kind::Integer { low: 1, high: 201 }, Default { value: "15", reason: "0.6 % of the integral over many slices" },
         "Slices along the contact ellipse over which slip varies. One slice with one point has no friction from spin.").hint("in pure spin 15 slices are within 0.6 % of many, 45 within 0.06 %; where rolling and spin mix under a steep law 15 may be 10 % off"),
     Key::new("traction.points_across", Kind::Integer { low: 1, high: 9 }, Default { value: "1", reason: "the source varies slip along the ellipse only" },
         "Points across each slice. With one, what spin adds across a slice is left out: friction from spin alone comes out low by the factor 1/E, E the complete elliptic integral of the contact (2 % for axes of 8 to 1, 5 % for 5 to 1, 15 % for 2.3 to 1), with rolling slip beside up to as much too high.").hint("in pure spin by many slices two are within 2 % and three within 0.8 % where the axes are 2.3 to 1; with few slices the error of these remains").example_of("3"),
-    Key::new("traction.heathcote", Kind::Boolean, Default { value: "false", reason: "the source has no such term" },
-        "Whether the edges of a contact slide because its surface is curved across the groove."),
 
     Key::new("contact_damping.law", Kind::Choice(DAMPING_LAWS), Default { value: "none", reason: "the source states no damping of contacts" },
         "Loss in the normal contacts between balls and races."),
     quantity("contact_damping.alpha", Kind::Quantity(InverseSpeed, closed(0.0, 1e4, "s/m")), LAW_NEEDS,
         "Coefficient of `hunt-crossley`: F = K d^1.5 (1 + 1.5 alpha v).").hint("steel has 0.08 to 0.32 s/m"),
-    Key::new("contact_damping.restitution", Kind::Number(above(0.0, 1.0, "")), LAW_NEEDS,
-        "Coefficient of restitution that `lankarani-nikravesh` aims at. Its formula holds near 1: asked for 0.95, 0.9, 0.7, 0.5 it gives 0.954, 0.913, 0.80, 0.73.").hint("1 is an impact without loss; steel has 0.8 to 0.98").example_of("0.9"),
-    quantity("contact_damping.slowest", SLIP,
-        Default { value: "1e-3 m/s", reason: "contacts that begin at rest need a speed of approach" },
-        "Least speed of approach that `lankarani-nikravesh` divides by."),
 
     Key::new("ball_contact.law", Kind::Choice(BALL_CONTACT_LAWS),
         Default { value: "hertz", reason: "balls that no cage keeps apart touch as equal spheres; the source's have cages" },

@@ -71,8 +71,6 @@ pub enum Kind {
     Profile(Dimension, Range),
     /// A value of one of these kinds, plain numbers or quantities; another key says which.
     Either(&'static [Kind]),
-    /// A list of pairs: a quantity, strictly increasing, and a plain number.
-    Curve(Dimension, Range, Range),
     /// A list of quantities, strictly increasing.
     Quantities(Dimension, Range),
     /// `true` for held at zero, or a profile.
@@ -176,9 +174,6 @@ impl Key {
                 format!("\"{}\"", or(usual(dimension, range)))
             }
             Kind::Either(_) => or("0.1").to_string(),
-            Kind::Curve(dimension, range, _) => {
-                format!("[[\"{}\", 0.05]]", or(usual(dimension, range)))
-            }
             Kind::Quantities(dimension, range) => {
                 format!("[\"{}\", \"100 {}\"]", or(usual(dimension, range)), range.unit)
             }

@@ -153,9 +153,6 @@ fn kind_and_range(key: &Key) -> (String, String) {
                 .collect();
             (nouns.join(" or "), range)
         }
-        Kind::Curve(dimension, ..) => {
-            (format!("list of pairs: {}, number", noun(dimension)), range)
-        }
         Kind::Quantities(dimension, _) => {
             let noun = noun(dimension);
             let many =
@@ -275,7 +272,7 @@ with a blow. Where the inner race's speed is given and not zero at t = 0, everyt
 equilibrium moves on, balls roll without slip on the pitch circle, and traction, where there is any, holds them in their orbit.
 
 **Traction.** `constant`: `coefficient`, `regularisation_speed`. `slide-to-roll`: `b`, `c` (plain numbers), `d`, `entrainment_floor`.
-`slip-speed`: `b`, `c` (s/m), `d`. `table`: `points`. The two curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.
+`slip-speed`: `b`, `c` (s/m), `d`. The two curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.
 
 ## A flexible solid
 A scene with `[solid]` in place of `[bearing]` goes to `check`, `plan`, `statics`, `modes` and `run`; its results are described

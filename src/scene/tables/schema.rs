@@ -279,11 +279,6 @@ fn key_schema(key: &'static Key) -> Value {
                 .collect();
             json!({ "anyOf": any })
         }
-        Kind::Curve(dimension, _, numbers) => {
-            let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2,
-                "prefixItems": [reference(dimension), number_schema(numbers)] });
-            list(&pair, 1, None)
-        }
         Kind::Quantities(dimension, _) => list(&reference(dimension), 1, None),
         Kind::TrueOrProfile(dimension, _) => {
             let profile = json!({ "$ref": format!("#/$defs/{}", profile_name(dimension)) });
@@ -330,7 +325,6 @@ pub(crate) fn range_text(key: &Key) -> Option<String> {
                 .collect();
             Some(ranges.join(", or "))
         }
-        Kind::Curve(_, range, numbers) => Some(format!("{range}, increasing; {numbers}")),
         _ => None,
     }
 }

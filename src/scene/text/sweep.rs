@@ -180,7 +180,6 @@ fn refuse_unsweepable(path: &str, leads: &Leads) -> Result<(), Problem> {
         Kind::Text
         | Kind::Choices(_)
         | Kind::Vector(..)
-        | Kind::Curve(..)
         | Kind::Quantities(..)
         | Kind::TrueOrProfile(..) => Err(Problem::NotSweepable),
         _ => Ok(()),

@@ -21,8 +21,6 @@ pub enum Checked {
     Profile(Profile),
     /// Which of the kinds of [`Kind::Either`], and the value.
     Either(usize, f64),
-    /// Pairs of [`Kind::Curve`].
-    Curve(Vec<[f64; 2]>),
     Quantities(Vec<f64>),
 }
 
@@ -93,9 +91,6 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
         (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
             either(key, kinds, &node.value).map_err(here)
         }
-        (Kind::Curve(dimension, range, numbers), Value::List(items)) => {
-            curve(key, items, node.offset, dimension, range, numbers)
-        }
         (_, other) => Err(here(wrong_kind(key, other))),
     }
 }
@@ -111,11 +106,9 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             _ => Value::Text(text.to_string()),
         },
         Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
-        Kind::Vector(..)
-        | Kind::Choices(_)
-        | Kind::Curve(..)
-        | Kind::Quantities(..)
-        | Kind::TrueOrProfile(..) => return Err(Problem::NotSweepable),
+        Kind::Vector(..) | Kind::Choices(_) | Kind::Quantities(..) | Kind::TrueOrProfile(..) => {
+            return Err(Problem::NotSweepable);
+        }
         Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
             Value::Text(text.to_string())
         }
@@ -142,36 +135,6 @@ fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, P
         }
     }
     Err(first_problem.unwrap_or_else(|| wrong_kind(key, value)))
-}
-
-/// Pairs of a quantity and a number, `[["0.1 m/s", 0.05], ...]`.
-fn curve(
-    key: &Key,
-    items: &[Node],
-    offset: usize,
-    dimension: Dimension,
-    range: Range,
-    numbers: Range,
-) -> Result<Checked, ValueError> {
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    for item in items {
-        let wrong = || ValueError::from((item.offset, wrong_kind(key, &item.value)));
-        let Value::List(pair) = &item.value else { return Err(wrong()) };
-        let [x, y] = pair.as_slice() else { return Err(wrong()) };
-        let at = quantity(key, &x.value, dimension, range).map_err(|p| (x.offset, p))?;
-        let Value::Number(text) = &y.value else {
-            return Err((y.offset, wrong_kind(key, &y.value)).into());
-        };
-        let value = number(key, text, numbers).map_err(|p| (y.offset, p))?;
-        if points.last().is_some_and(|last| at <= last[0]) {
-            return Err((x.offset, Problem::NotIncreasing { written: shown(&x.value) }).into());
-        }
-        points.push([at, value]);
-    }
-    if points.is_empty() {
-        return Err((offset, wrong_kind(key, &Value::Other("an empty list"))).into());
-    }
-    Ok(Checked::Curve(points))
 }
 
 /// A list of increasing quantities.
@@ -215,9 +178,6 @@ fn expected(kind: Kind) -> String {
         }
         Kind::Either(kinds) => {
             kinds.iter().map(|kind| expected(*kind)).collect::<Vec<_>>().join(", or ")
-        }
-        Kind::Curve(dimension, ..) => {
-            format!("a list of pairs, each {} with its unit and a plain number", dimension.name())
         }
         Kind::Quantities(dimension, _) => {
             format!("a list of increasing values with units, each {}", dimension.name())

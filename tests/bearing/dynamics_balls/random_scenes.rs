@@ -103,7 +103,7 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
     if draw.chance(0.2) {
         text += "[ball_forces]\ngravity = [\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]\n";
     }
-    text += &match draw.pick(&["none", "constant", "slide-to-roll", "slip-speed", "table"]) {
+    text += &match draw.pick(&["none", "constant", "slide-to-roll", "slip-speed"]) {
         "constant" => format!(
             "[traction]\nlaw = \"constant\"\ncoefficient = {}\nregularisation_speed = \"{} m/s\"\n",
             draw.between(0.01, 0.15),
@@ -111,9 +111,6 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
         ),
         "slip-speed" => "[traction]\nlaw = \"slip-speed\"\nb = \"0.5 s/m\"\nc = \"8 s/m\"\n\
             d = 0.1\n"
-            .into(),
-        "table" => "[traction]\nlaw = \"table\"\npoints = [[\"0 m/s\", 0.0], [\"0.1 m/s\", 0.08], \
-            [\"1 m/s\", 0.05]]\n"
             .into(),
         law => format!("[traction]\nlaw = \"{law}\"\n"),
     };
@@ -123,7 +120,7 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
     if draw.chance(0.3) {
         let damping = draw.pick(&[
             "law = \"hunt-crossley\"\nalpha = \"0.2 s/m\"\n",
-            "law = \"lankarani-nikravesh\"\nrestitution = 0.9\n",
+            "law = \"hunt-crossley\"\nalpha = \"2 s/m\"\n",
         ]);
         text += &format!("[contact_damping]\n{damping}");
     }

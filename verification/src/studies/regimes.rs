@@ -1,5 +1,5 @@
 //! The default run on nine regimes of motion against every other way to step: does it take the method that
-//! costs least for the error it delivers, and as many steps as were foretold?
+//! costs least for the error it delivers?
 //!
 //! An error of the implicit method or of Runge–Kutta is one against a converged run of the explicit one with
 //! error control, and the other way round. Where strikes of a cage let small differences grow, the error of one run is
@@ -7,7 +7,7 @@
 
 use bearing_dynamics::assembly::channels::ChannelGroup;
 use bearing_dynamics::assembly::loads::DynamicProblem;
-use bearing_dynamics::motion::foretell::{choose, foretell};
+use bearing_dynamics::motion::integrator_choice::choose;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::output::session::{RunRequest, Session, Status};
 use bearing_dynamics::scene;
@@ -241,9 +241,7 @@ fn run(context: &mut ParetoContext) -> Result<(), CaseError> {
         let (name, loads) = (regime.0, regime.6);
         let draws = loads.iter().map(|load| draw(regime, load)).collect::<Result<Vec<_>, _>>()?;
         let Draw { problem, request, .. } = &draws[draws.len() / 2];
-        let watch = Stopwatch::start();
-        let choice = choose(&problem.assembly(), request);
-        let choosing = watch.seconds();
+        let choice = choose(&problem.assembly());
         let default = Method { integrator: choice.integrator, stepping: request.options.stepping };
         let accuracies = [1e-2, 1e-3, 1e-4];
         let mut methods =
@@ -279,32 +277,21 @@ fn run(context: &mut ParetoContext) -> Result<(), CaseError> {
         };
         let others = against(cheapest(&|m| m.integrator != default.integrator));
         let all = against(cheapest(&|_| true));
-        let foretold = foretell(
-            &problem.assembly(),
-            &RunRequest {
-                options: RunOptions { integrator: default.integrator, ..request.options },
-                ..request.clone()
-            },
-        );
-        let foretold = foretold.map_err(|error| CaseError::message(error.to_string()))?.steps;
         let apart = draws.iter().map(|draw| errors(&draw.by_implicit, &draw.by_explicit)[0]);
         let apart = median(apart.collect());
         context.sentence(format!(
             "{name}: {}, error {:.1e} of {}, {:.2} s a simulated second. Of what is no farther off, the cheapest: of \
-             the other methods {others}; of all {all}. {foretold:.0} steps foretold, {steps} taken; the choice took \
-             {:.0} ms; the two references are {apart:.1e} apart.",
+             the other methods {others}; of all {all}. {steps} steps; the two references are {apart:.1e} apart.",
             own.variant,
             own.error,
             "the race's displacement",
             own.seconds,
-            1e3 * choosing,
         ));
         for way in ways {
             context.push(way.point);
         }
     }
-    context.sentence(
-        "Times are those of a simulated second, of steps and rows, without the start and without the choice.",
-    );
+    context
+        .sentence("Times are those of a simulated second, of steps and rows, without the start.");
     Ok(())
 }
