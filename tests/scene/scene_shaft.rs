@@ -43,7 +43,7 @@ segments = [{ length = "300 mm", outer_diameter = "30 mm" }, { length = "100 mm"
 disc = [{ at = "200 mm", outer_diameter = "200 mm", inner_diameter = "20 mm", width = "20 mm" }]
 load = [{ at = "0 mm", z = "-100 N" }]
 unbalance = [{ at = "200 mm", size = "1e-4 kg m", angle = "90 deg" }]
-watch = [{ name = "disc", at = "200 mm" }]
+probe = [{ name = "disc", at = "200 mm" }]
 "#;
     let assembly = read(beam).unwrap();
     let (body, shaft) = (&assembly.bodies[0], &assembly.shafts[0]);
@@ -207,7 +207,7 @@ segments = [{ length = "250 mm", outer_diameter = "30 mm" }, { length = "150 mm"
 mesh = { order = 1, method = "explicit", race_stiffness = "1e9 N/m", race_damping = "10 N s/m" }
 disc = [{ at = "-200 mm", mass = "60 g", axial = "2e-5 kg m^2", transverse = "1e-5 kg m^2" }, { at = "0 mm", mass = "1 kg", axial = "1e-3 kg m^2", transverse = "1e-3 kg m^2" }]
 load = [{ at = "30 mm", z = "-100 N" }]
-watch = [{ name = "mid", at = "0 mm" }]
+probe = [{ name = "mid", at = "0 mm" }]
 damping = "5 1/s"
 "#;
     let document =

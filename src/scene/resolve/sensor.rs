@@ -57,7 +57,7 @@ pub(crate) fn refuse_sensors(document: &Document) -> Result<(), SceneError> {
     refuse_nameless(document)?;
     let Some(name) = document.names("sensor").next() else { return Ok(()) };
     let reason = "a sensor watches bearings and what they sit on";
-    let advice = "watch places of a solid with [[solid.probe]]";
+    let advice = "record places of a solid with [[solid.probe]]";
     Err(document.error_of_name("sensor", name, Problem::refused(reason, advice)))
 }
 
@@ -110,7 +110,7 @@ fn accelerometer(
         && scene.bodies[*body].beam.is_some()
     {
         let reason = format!("{on} bends: an accelerometer sits on what is rigid");
-        let advice = "watch its sections with `watch` in its beam, or put the sensor on a race or a housing's race";
+        let advice = "record its sections with `probe` in its beam, or put the sensor on a race or a housing's race";
         return Err(reader.document.refused("sensor.on", reason, advice));
     }
     let mut number = |key: &str| reader.number(key).unwrap_or(0.0);
