@@ -11,9 +11,10 @@ VERIFY = $(CARGO) build --release --locked -q $(PACKAGES) --bins --test single_t
 verify:
 	$(VERIFY) --tier smoke --jobs 2
 
-## The same with the long cases.
+## The same with the long cases; writes docs/verification.md.
 verify-full:
 	$(VERIFY) --tier full
+	"$${CARGO_TARGET_DIR:-target}/release/verify" page
 
 ## Laws, command line, scene reader, golden values; what had to be skipped is said last.
 SKIPPED = "$${CARGO_TARGET_DIR:-target}/skipped.txt"

@@ -25,7 +25,7 @@ mod run_up;
 use run_up::{RunUp, compare};
 
 const SCRIPT: &str = include_str!("rotor.py");
-const KEPT: &str = include_str!("kept/rotor.json");
+const KEPT: &str = include_str!("kept.json");
 const ROSS: &str = "ROSS 2.3.0, elements of 10 mm";
 
 #[derive(Debug, Deserialize)]
@@ -33,7 +33,7 @@ struct Kept {
     version: String,
     /// rad/s.
     speeds: Vec<f64>,
-    /// Of each speed, real and imaginary parts, ascending by the latter.
+    /// Real and imaginary parts at each speed, by ascending imaginary part.
     eigenvalues: Vec<Vec<[f64; 2]>>,
     response: Vec<Response>,
     run_up: RunUp,
@@ -81,7 +81,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     for (&speed, theirs) in kept.speeds.iter().zip(&kept.eigenvalues) {
         let ours = model.whirls(speed, theirs.len())?;
         if ours.len() != theirs.len() {
-            return Err(CaseError::message(format!("{} motions at {speed} rad/s", ours.len())));
+            return Err(CaseError::message(format!("{} modes at {speed} rad/s", ours.len())));
         }
         let mut own = 0.0f64;
         for (ours, &[re, im]) in ours.iter().zip(theirs) {
@@ -106,10 +106,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             worst[0],
         )
         .independent(0.0, ROSS)
-        .absolute(
-            1e-3,
-            "errors of its elements of two stations, of the second order of their length in shear",
-        ),
+        .absolute(1e-3, "discretization error of its two-node elements, of second order in shear"),
     );
     context.check(
         Check::new(
@@ -119,7 +116,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             worst[1],
         )
         .independent(0.0, ROSS)
-        .absolute(1e-5, "a thousandth of the ratios, which reach 0.01"),
+        .absolute(1e-5, "0.1 % of the largest ratio, 0.01"),
     );
     response(context, &kept, &model)?;
     compare(context, &kept.run_up)
@@ -148,20 +145,19 @@ fn response(context: &mut CaseContext, kept: &Kept, model: &RotorModel) -> Resul
             "unbalance response at {} mm: largest difference over its largest value",
             place.at * 1e3
         );
-        context.check(
-            Check::new(&id, &what, "1", worst)
-                .independent(0.0, ROSS)
-                .absolute(5e-3, "a resonance that lies 0.01 % elsewhere, where its flank is steep"),
-        );
+        context.check(Check::new(&id, &what, "1", worst).independent(0.0, ROSS).absolute(
+            5e-3,
+            "critical speeds differ by 0.01 %, and the response is steep near them",
+        ));
     }
     Ok(())
 }
 
-/// ROSS run now against ROSS as kept, where a Python that has it is named.
+/// Compares a new run of ROSS with the kept output where `ROSS_PYTHON` names a Python that has it.
 fn rerun(context: &mut CaseContext, kept: &Kept) -> Result<(), CaseError> {
     let Some(python) = std::env::var_os("ROSS_PYTHON") else {
         let text = format!(
-            "ROSS_PYTHON is not set: compared with the kept output alone (ROSS {}).",
+            "ROSS_PYTHON is not set: compared with the kept output of ROSS {} only.",
             kept.version
         );
         context.finding("ross", text);
@@ -184,10 +180,12 @@ fn rerun(context: &mut CaseContext, kept: &Kept) -> Result<(), CaseError> {
         && now_values.iter().zip(&kept_values).all(|(a, b)| (a / b - 1.0).abs() <= 1e-9)
         && now.run_up.is_like(&kept.run_up);
     if !alike {
-        return Err(CaseError::message("ROSS now and as kept differ by more than 1e-9"));
+        return Err(CaseError::message(
+            "a new run of ROSS differs from the kept output by more than 1e-9",
+        ));
     }
     let text = format!(
-        "ROSS was run anew ({}): its output is the kept one ({}) to 1e-9.",
+        "A new run of ROSS {} gives the kept output of {} to 1e-9.",
         now.version, kept.version
     );
     context.finding("ross", text);

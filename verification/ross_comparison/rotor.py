@@ -1,6 +1,6 @@
-"""A stepped, hollow, overhung rotor on two unlike bearings in ROSS: natural motions over speed, response to an unbalance, a run-up.
+"""A stepped, hollow, overhung rotor on two unlike bearings in ROSS: eigenvalues over speed, response to an unbalance, a run-up.
 
-pip install ross-rotordynamics "plotly<6"; python rotor.py kept/rotor.json
+pip install ross-rotordynamics "plotly<6"; python rotor.py kept.json
 ("-" prints it as the last line.)
 """
 
@@ -22,9 +22,11 @@ BEARINGS = [(0.05, 4e7, 7e7, 500.0, 800.0), (0.4, 6e7, 9e7, 700.0, 700.0)]
 # Place, m; kg m.
 UNBALANCE = (0.25, 1e-3)
 SPEEDS = [0.0, 100.0, 200.0, 300.0, 400.0, 500.0, 750.0, 1000.0, 1500.0, 2000.0]
-MOTIONS = 8
-# From rest at a constant rate: end, s; speed there, rad/s; kg m; steps of Newmark's method and rows, s; places, m.
-RUN_UP = {"end": 0.5, "top": 2600.0, "unbalance": 1e-5, "step": 1e-5, "interval": 5e-4, "places": [0.25, 0.5]}
+MODES = 8
+# From rest at a constant rate: end, s; speed there, rad/s; kg m; Newmark step and interval of rows, s; places, m.
+RUN_UP = {"end": 0.5, "top": 2600.0, "unbalance": 1e-5, "step": 1e-5, "interval": 1e-2, "places": [0.25, 0.5]}
+# Interval at which the largest distance is sought, s.
+PEAK_INTERVAL = 5e-4
 
 
 def node(place):
@@ -47,7 +49,7 @@ def rotor():
     return ross.Rotor(shaft, discs, bearings)
 
 
-def lateral_motions(rotor, speed):
+def lateral_modes(rotor, speed):
     """Eigenvalues of ROSS' matrices over the lateral coordinates, those with a positive imaginary part, ascending."""
     count = rotor.ndof // 6
     lateral = [6 * node + i for node in range(count) for i in (0, 1, 3, 4)]
@@ -58,12 +60,12 @@ def lateral_motions(rotor, speed):
     zero, unit = numpy.zeros_like(m), numpy.eye(len(m))
     values = scipy.linalg.eigvals(numpy.block([[zero, unit], [-inverse @ k, -inverse @ c]]))
     found = sorted((value.imag, value.real) for value in values if value.imag > 1.0)
-    return [[re, im] for im, re in found[:MOTIONS]]
+    return [[re, im] for im, re in found[:MODES]]
 
 
 def run_up(rotor, driven_along_x):
-    """Displacements (m) along both lateral axes at the places, row by row. A drive whose torque stays along X leaves tilted discs the moment
-    of their angular acceleration; one that acts along each section's own axis does not."""
+    """Displacements (m) along both lateral axes at the places, a row each PEAK_INTERVAL. A drive torque along X exerts a moment on tilted discs
+    that accelerate; a torque along each section's own axis does not."""
     end, step = RUN_UP["end"], RUN_UP["step"]
     rate = RUN_UP["top"] / end
     time = numpy.arange(round(end / step) + 1) * step
@@ -75,15 +77,23 @@ def run_up(rotor, driven_along_x):
     force[:, first + 1] = out * numpy.sin(angle) - back * numpy.cos(angle)
     of_acceleration = rotor.Ksdt() * (1.0 if driven_along_x else 0.0)
     _, moved = rotor.integrate_system(speed, force, time, Ksdt=of_acceleration)
-    every = round(RUN_UP["interval"] / step)
+    every = round(PEAK_INTERVAL / step)
     columns = [6 * node(place) + i for place in RUN_UP["places"] for i in (0, 1)]
-    return [[float(f"{value:.6e}") for value in row] for row in moved[::every, columns]]
+    return moved[::every, columns]
+
+
+def digits(value):
+    return float(f"{value:.6e}")
+
+
+def peaks(rows):
+    return [digits(max(numpy.hypot(rows[:, 2 * i], rows[:, 2 * i + 1]))) for i in (0, 1)]
 
 
 def main():
     of = rotor()
     result = {"version": ross.__version__, "speeds": SPEEDS}
-    result["eigenvalues"] = [lateral_motions(of, speed) for speed in SPEEDS]
+    result["eigenvalues"] = [lateral_modes(of, speed) for speed in SPEEDS]
     at, moment = UNBALANCE
     response = of.run_unbalance_response(
         node(at), moment, 0.0, frequency=numpy.array(SPEEDS[1:])
@@ -97,16 +107,22 @@ def main():
         }
         for place in (0.05, 0.25, 0.5)
     ]
-    far = [numpy.hypot(row[0], row[1]) for row in run_up(of, True)]
-    result["run_up"] = RUN_UP | {"rows": run_up(of, False), "peak_driven_along_x": float(f"{max(far):.6e}")}
+    rows = run_up(of, False)
+    every = round(RUN_UP["interval"] / PEAK_INTERVAL)
+    result["run_up"] = RUN_UP | {
+        "rows": [[digits(value) for value in row] for row in rows[::every]],
+        "peaks": peaks(rows),
+        "peak_driven_along_x": peaks(run_up(of, True))[0],
+    }
     if sys.argv[1] == "-":
         # The last line: its imports print lines of their own.
         print(json.dumps(result))
         return
     with open(sys.argv[1], "w") as file:
         text = json.dumps(result, indent=1)
-        # A row a line.
-        file.write(re.sub(r"\[\s+([-\d.e+]+),\s+([-\d.e+]+),\s+([-\d.e+]+),\s+([-\d.e+]+)\s+\]", r"[\1, \2, \3, \4]", text) + "\n")
+        # A list of numbers a line.
+        listed = lambda found: "[" + re.sub(r",\s+", ", ", found[1]) + "]"
+        file.write(re.sub(r"\[\s+(?=[-\d])([^\[\]]*?)\s+\]", listed, text) + "\n")
 
 
 main()

@@ -194,7 +194,8 @@ impl Line {
         self.ids().len()
     }
 
-    fn ids(&self) -> BTreeSet<&str> {
+    /// Ids of the published numbers, twins once.
+    pub fn ids(&self) -> BTreeSet<&str> {
         self.values.iter().filter_map(|name| split(name)).map(|part| part.1).collect()
     }
 
@@ -271,7 +272,8 @@ fn settled(case: &CaseReport, id: &str) -> Option<Status> {
     Some(statuses.max_by_key(|status| severity(*status)).unwrap_or(Status::Failed))
 }
 
-fn severity(status: Status) -> u8 {
+/// Rank of a status, the least favourable highest.
+pub fn severity(status: Status) -> u8 {
     match status {
         Status::Reproduced | Status::Pass => 0,
         Status::ReproducedUnderAssumption => 1,

@@ -5,13 +5,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::check::{Check, Explanation, Reference, ReferenceKind, Tolerance};
 use crate::context::CaseContext;
 use crate::published::Published;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// A published number, within tolerance on stated inputs alone.
@@ -42,7 +42,7 @@ impl Status {
 }
 
 /// What a tolerance applies to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceOn {
     RelativeError,
@@ -54,7 +54,7 @@ pub enum ToleranceOn {
 }
 
 /// A judged check. Numbers that are not finite appear as `null`, and `failure` says so.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct CheckReport {
     pub id: String,
     pub quantity: String,

@@ -32,6 +32,7 @@ pub mod mutants;
 mod number;
 pub mod oracles;
 pub mod outside;
+pub mod page;
 pub mod pareto;
 pub mod pressed_block;
 pub mod published;

@@ -12,8 +12,8 @@ use verification::cache::Cache;
 use verification::case::{Case, Tier};
 use verification::index::Index;
 use verification::machine::{self, Machine};
-use verification::report::{CaseReport, CaseStatus, Report};
-use verification::{cases, golden, mutants, outside, pareto, runner};
+use verification::report::{self, CaseReport, CaseStatus, Report};
+use verification::{cases, golden, mutants, outside, page, pareto, runner};
 
 #[derive(Parser)]
 #[command(name = "verify", about, version, args_conflicts_with_subcommands = true)]
@@ -57,7 +57,13 @@ enum Action {
         #[arg(long, value_name = "DIR")]
         golden: Option<PathBuf>,
     },
-    /// Run time against error, for each registered study.
+    /// Write docs/verification.md from reports.
+    Page {
+        /// A report.json; may be given again, a later one replaces cases of an earlier one.
+        #[arg(long, value_name = "FILE", default_value = "target/verify/report.json")]
+        from: Vec<PathBuf>,
+    },
+    /// Run time against error, for each study.
     Pareto {
         /// Folder of the tables and figures.
         #[arg(long, value_name = "DIR", default_value = "target/pareto")]
@@ -87,6 +93,7 @@ fn main() -> ExitCode {
         Some(Action::Golden { case, reason, golden }) => {
             accept(&case, &reason, &golden.unwrap_or_else(golden::default_folder))
         }
+        Some(Action::Page { from }) => write_page(&from),
         Some(Action::Pareto { out, study }) => studies(&out, study.as_deref()),
         Some(Action::Mutants { only, jobs, root }) => {
             let here = || Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -215,6 +222,18 @@ fn accept(case: &str, reason: &str, folder: &Path) -> Result<bool, String> {
         }
     }
     Ok(accepted)
+}
+
+fn write_page(from: &[PathBuf]) -> Result<bool, String> {
+    let named = |path: &Path, error: String| format!("{}: {error}", path.display());
+    let read =
+        |path: &PathBuf| std::fs::read_to_string(path).map_err(|e| named(path, e.to_string()));
+    let reports = from.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let index = Index::load().map_err(|error| format!("source_index.toml: {error}"))?;
+    let text = page::render(&reports, &index)?;
+    report::write_atomically(&page::path(), &text)
+        .map_err(|e| named(&page::path(), e.to_string()))?;
+    Ok(true)
 }
 
 fn seeded_faults(root: &Path, only: &[String], jobs: usize) -> Result<bool, String> {

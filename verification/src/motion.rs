@@ -41,7 +41,6 @@ pub const RACE_INERTIA: (&str, &str, &str) = (
 pub const ROTOR_IN_ELEMENTS: &str = include_str!("../../scenes/rotor_in_elements.toml");
 pub const ROTOR_IN_PILLOW_BLOCKS: &str = include_str!("../../scenes/rotor_in_pillow_blocks.toml");
 pub const ROTOR_RUN_UP: &str = include_str!("../../scenes/rotor_run_up.toml");
-pub const ROTOR_OF_TETRAHEDRA: &str = include_str!("../../scenes/rotor_of_tetrahedra.toml");
 pub const RACE_IN_ROUGH_BORE: &str = include_str!("../../scenes/race_in_rough_bore.toml");
 pub const SPINNING_DISC: &str = include_str!("../../scenes/spinning_disc.toml");
 

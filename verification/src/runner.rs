@@ -13,6 +13,7 @@ use crate::cases;
 use crate::context::CaseContext;
 use crate::golden::{self, GoldenValue};
 use crate::judge::{self, Verdict};
+use crate::page;
 use crate::published::Published;
 use crate::readme;
 use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, GoldenStatus};
@@ -130,6 +131,8 @@ pub fn assess(case: &Case, run: &Run, golden_folder: &Path) -> CaseReport {
             Ok(text) => readme::stale(&text, case.id, &checks),
             Err(error) => vec![error],
         });
+        let page = std::fs::read_to_string(page::path()).unwrap_or_default();
+        problems.extend(page::stale(&page, case.id, &checks));
     }
     let golden = compare_golden(case.id, &record.golden, golden_folder);
     let mut report = CaseReport {

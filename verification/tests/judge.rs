@@ -1,15 +1,12 @@
 //! Each rule of the judge, and that breaking it is noticed.
 
 use verification::case::{Case, Computation, Tier};
-use verification::check::ReferenceKind::{Consistency, Stated};
 use verification::check::{Check, Explanation};
 use verification::context::CaseContext;
-use verification::golden::GoldenTolerance;
 use verification::index::Index;
 use verification::judge::{CheckReport, Status, entries_without_effect, judge};
 use verification::published::Published;
-use verification::readme;
-use verification::report::{CaseReport, CaseStatus, GoldenStatus};
+use verification::report::{CaseReport, CaseStatus};
 use verification::runner::{self, Run};
 
 const PUBLISHED: &str = r#"
@@ -69,26 +66,6 @@ fn statuses_of_checks_that_hold() {
     let report = verdict(force(101.0).relative(0.02, "why"));
     assert_eq!((report.error_absolute, report.error_relative), (Some(1.0), Some(0.01)));
     assert_eq!(report.ratio, Some(0.5));
-}
-
-#[test]
-fn kinds_of_references_are_kept_apart() {
-    let held = |check: Check| verdict(check.absolute(0.0, "exact"));
-    let new = || Check::new("x", "x", "N", 1.0);
-    let ways = held(new().consistency(1.0, "settled run against our own equilibrium"));
-    assert_eq!((ways.status, ways.reference_kind), (Status::Pass, Some(Consistency)));
-    let said = held(new().stated(1.0, "2.4.3", "thinner is stiffer"));
-    assert_eq!((said.status, said.reference_kind), (Status::Pass, Some(Stated)));
-    assert_eq!(said.reference_source, "2.4.3: thinner is stiffer");
-    // Neither ways nor sentence named.
-    for nameless in [
-        new().consistency(1.0, " "),
-        new().stated(1.0, "", "thinner is stiffer"),
-        new().stated(1.0, "2.4.3", ""),
-    ] {
-        let failure = held(nameless).failure.unwrap();
-        assert!(failure.contains("where it comes from"), "{failure}");
-    }
 }
 
 /// A number met because something was identified from it is no reproduction, and no evidence.
@@ -214,25 +191,6 @@ fn a_number_that_could_be_anything_is_noticed() {
     assert_eq!(entries_without_effect(&context, &published), ["force"]);
 }
 
-#[test]
-fn misuses_of_the_context_fail_the_case() {
-    let none = Published::default();
-    let sound = |id: &str| Check::new(id, "x", "1", 1.0).closed_form(1.0, "one").absolute(0.0, "e");
-    let problems = |build: fn(&mut CaseContext)| {
-        let mut context = CaseContext::default();
-        context.check(sound("x"));
-        build(&mut context);
-        judge(&context, &none).problems.len()
-    };
-    assert_eq!(problems(|_| ()), 0);
-    assert_eq!(problems(|context| context.finding("x", "same id as the check")), 1);
-    assert_eq!(problems(|context| context.figure("fig", "<svg>".into(), "cut off")), 1);
-    assert_eq!(problems(|context| context.figure("../up", "<svg></svg>".into(), "path")), 1);
-    assert_eq!(problems(|context| context.table("t", "T", &["a"], vec![vec![]])), 1);
-    assert_eq!(problems(|context| context.assumption("a", "", "1")), 1);
-    assert_eq!(judge(&CaseContext::default(), &none).problems, ["the case states no check"]);
-}
-
 fn assess(run: fn(&mut CaseContext) -> Result<(), verification::case::CaseError>) -> CaseReport {
     let case =
         Case { id: "made_up", title: "", section: "", tier: Tier::Smoke, published: "", run };
@@ -255,18 +213,6 @@ fn panics_and_errors_are_reported_and_keep_what_was_recorded() {
         Ok(())
     });
     assert_eq!(erred.error.as_deref(), Some("invalid float literal"));
-}
-
-#[test]
-fn numbers_to_pin_without_a_golden_file_fail() {
-    let report = assess(|context| {
-        let check = Check::new("x", "x", "1", 1.0).closed_form(1.0, "one").absolute(0.0, "exact");
-        context.check(check.golden(GoldenTolerance::EXACT));
-        context.work("iterations", 7);
-        Ok(())
-    });
-    assert_eq!(report.status, CaseStatus::GoldenChanged);
-    assert_eq!((report.golden.status, report.golden.values), (GoldenStatus::GoldenMissing, 2));
 }
 
 /// Lines of the index take their words from the run; a twin counts once, by its least favourable status.
@@ -321,25 +267,6 @@ lines = [
     assert_eq!(words(&[poor, two])[..2], ["2 failed, 2 not built", "failed"]);
     assert_eq!(index.twins("one", "force"), ["two"]);
     assert!(index.twins("one", "load").is_empty());
-}
-
-/// A figure of the README is held against the checks of its case, and of no other.
-#[test]
-fn a_stale_figure_of_the_readme_is_told() {
-    let checks = [verdict(force(100.9).relative(0.01, "why"))];
-    let text = |shown: &str| format!("off by <!-- size pull/force 1 -->{shown}<!-- -->.");
-    let stale = |shown: &str, case: &str| readme::stale(&text(shown), case, &checks);
-    let right = readme::figures(&text("?")).unwrap()[0].from_checks(&checks).unwrap();
-    assert!(right.contains("0.9"), "{right}");
-    assert_eq!(stale(&right, "pull"), [""; 0]);
-    assert_eq!(stale("0.8 %", "push"), [""; 0]);
-    let said = stale("0.8 %", "pull");
-    assert!(said.len() == 1 && said[0].contains("README says 0.8 %, it is 0.9"), "{said:?}");
-    assert!(
-        readme::stale("<!-- size pull/other 1 -->0.9 %<!-- -->", "pull", &checks)[0]
-            .contains("no check")
-    );
-    assert_eq!(readme::stale("<!-- size pull/force 1 -->0.9 %", "pull", &checks).len(), 1);
 }
 
 /// What runs a case takes a function of the record alone. Were a case's text of published numbers

@@ -10,7 +10,7 @@ use crate::index::ChapterEntries;
 use crate::judge::CheckReport;
 use crate::machine::Machine;
 use crate::report::totals::{self, Totals};
-use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, Report, figure_file};
+use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, Report};
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -61,7 +61,6 @@ struct CaseEntry<'a> {
 struct FigureEntry<'a> {
     name: &'a str,
     caption: &'a str,
-    file: String,
 }
 
 pub fn render(report: &Report) -> io::Result<String> {
@@ -110,11 +109,7 @@ fn entry(case: &CaseReport) -> CaseEntry<'_> {
         figures: case
             .figures
             .iter()
-            .map(|figure| FigureEntry {
-                name: &figure.name,
-                caption: &figure.caption,
-                file: format!("figures/{}", figure_file(case, figure)),
-            })
+            .map(|figure| FigureEntry { name: &figure.name, caption: &figure.caption })
             .collect(),
         work: &case.work,
         golden: &case.golden,

@@ -1,17 +1,16 @@
-//! The report as data, and its three forms.
+//! The report as data, as JSON and as HTML.
 
 pub mod format;
 mod front;
 mod html;
 mod json;
-mod markdown;
 pub mod totals;
 
 use std::fs;
 use std::io;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Tier};
 use crate::context::{Assumption, Figure, Finding, Table, Work};
@@ -20,7 +19,7 @@ use crate::index::Index;
 use crate::judge::{CheckReport, Status};
 use crate::machine::Machine;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CaseStatus {
     Passed,
@@ -197,30 +196,12 @@ impl Report {
         (cached.clone().count(), cached.filter_map(|case| case.seconds).sum())
     }
 
-    /// Write `report.json`, `report.html`, `report.md` and the figures into `folder`. Each file
-    /// appears whole or not at all.
+    /// Write `report.json` and `report.html` into `folder`. Each file appears whole or not at all.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
-        let figures = folder.join("figures");
-        fs::create_dir_all(&figures)?;
-        for case in &self.cases {
-            for figure in &case.figures {
-                write_atomically(&figures.join(figure_file(case, figure)), &figure.svg)?;
-            }
-        }
+        fs::create_dir_all(folder)?;
         write_atomically(&folder.join("report.json"), &json::render(self)?)?;
-        write_atomically(&folder.join("report.md"), &markdown::render(self))?;
         write_atomically(&folder.join("report.html"), &html::render(self))
     }
-}
-
-/// File name of a figure within the report's `figures` folder.
-fn figure_file(case: &CaseReport, figure: &Figure) -> String {
-    let safe = |text: &str| -> String {
-        text.chars()
-            .map(|c| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' })
-            .collect()
-    };
-    format!("{}-{}.svg", safe(&case.id), safe(&figure.name))
 }
 
 /// Write a file so that a reader sees the old text or the new, never a part.
