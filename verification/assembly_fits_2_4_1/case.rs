@@ -208,7 +208,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             .closed_form(0.0, "balance of the rigid outer race")
             .absolute(
                 2e-6,
-                "balls that orbit off centre pull by mω² times 1 µm each; the rest is 1e-11",
+                "balls on an eccentric orbit exert mω² times 1 µm each; the rest is 1e-11",
             ),
         );
         // Interferences that nowhere let go are one linear problem: the first stands for all.
@@ -218,7 +218,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         context.check(
             Check::new(
                 &format!("mesh_{id}"),
-                &format!("{name}: stiffness of the support between half and whole load"),
+                &format!("{name}: stiffness of the support between half and full load"),
                 "N/µm",
                 1e-6 * curves[i].stiffness(),
             )
@@ -296,7 +296,7 @@ fn statements(context: &mut CaseContext, curves: &[Curves]) {
         )
         .absolute(
             1e-9,
-            "what the curvature of the balls' loads leaves of a secant over the same course",
+            "curvature of the ball loads over the same range",
         ),
     );
     context.check(

@@ -157,7 +157,7 @@ fn tops(context: &mut CaseContext) -> Result<(), CaseError> {
         let drift = top.energy(last_axis, last_spin) / top.energy(axis, spin) - 1.0;
         context.check(
             Check::new(&format!("top_energy_{tag}"), &format!("energy drift of the free {name} over 1e5 steps"), "1", drift)
-                .closed_form(0.0, "a free body keeps its energy; inertia of a ring written apart")
+                .closed_form(0.0, "a free body keeps its energy; inertia of a ring by separate code")
                 .absolute(
                     3e-11,
                     "Runge–Kutta damps a rotation by (ωh)⁶/144 a step: 1e-11 over all at ωh = 5e-3; the rest is rounding",
@@ -220,8 +220,7 @@ fn energy_drift(context: &mut CaseContext) -> Result<(), CaseError> {
             .closed_form(0.0, "without friction and damping energy is conserved")
             .absolute(
                 1e-6,
-                "Runge–Kutta damps an oscillation by (ωh)⁶/72 of its energy a step: 1.3e-6 over 300 rad of the part of the \
-                 energy that swings",
+                "Runge–Kutta damps an oscillation by (ωh)⁶/72 of its energy a step: 1.3e-6 over 300 rad of the oscillating part of the energy",
             ),
     );
     for (i, pair) in drifts.windows(2).enumerate().skip(1) {

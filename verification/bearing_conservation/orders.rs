@@ -144,7 +144,7 @@ fn make_and_break(context: &mut CaseContext, curves: &mut Vec<Curve>) -> Result<
     context.check(
         Check::new(
             "order_make_break_oracle",
-            "order where contacts make and break, beside one bounce",
+            "order where contacts open and close, against one bounce",
             "1",
             slope(&logs),
         )

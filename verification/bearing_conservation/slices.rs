@@ -69,7 +69,7 @@ fn across(context: &mut CaseContext) -> Result<(), CaseError> {
                 1e3 * ours,
             )
             .closed_form(1e3 * exact, "3κWa/8 E(e) of both contacts, E by quadrature")
-            .relative(4e-3 / (points * points) as f64, "where slip turns round Gauss's rule is off by the inverse square of the points: a fifth of the 2 % that one point leaves out, over that square"),
+            .relative(4e-3 / (points * points) as f64, "where slip changes sign, the error of Gauss's rule falls with the square of the points: a fifth of the 2 % of one point, over that square"),
         );
     }
     context.table(
@@ -151,7 +151,7 @@ pub(super) fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             )
             .closed_form(
                 2.0,
-                "midpoints of equal slices, slip that turns round in the middle of one",
+                "midpoints of equal slices, slip changes sign in the middle of one",
             )
             .absolute(0.01, "the next order, 1/(15)² of the first ratio"),
         );

@@ -177,7 +177,7 @@ fn orbit(context: &mut CaseContext, variant: &Variant) -> Result<f64, CaseError>
             exact,
             "unbalance over the dynamic stiffness of two masses on the oracle's bushing",
         )
-        .relative(0.02, "1 % of the bushing's mesh and what has not died out after three turns")
+        .relative(0.02, "1 % mesh error of the bushing and the transient left after three turns")
         .golden(GoldenTolerance::MIXED),
     );
     Ok(radius)

@@ -68,7 +68,7 @@ fn row_at(times: &[f64], time: f64) -> usize {
 }
 
 const GIVES_WAY: &str =
-    "the bore gives way by 2e-4 of its contact, and race and loads swing a little";
+    "compliance of the bore, 2e-4 of its contact, and small oscillations";
 
 fn pressed(context: &mut CaseContext) -> Result<(), CaseError> {
     // Below what holds it.
@@ -91,7 +91,7 @@ fn pressed(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "stick",
-            "way of a race pushed by 80 N, all nodes sticking",
+            "displacement of a race under 80 N, all nodes sticking",
             "µm",
             1e6 * along[last],
         )
@@ -125,10 +125,10 @@ fn pressed(context: &mut CaseContext) -> Result<(), CaseError> {
     let [from, to] = [5.5e-3, 7e-3].map(|time| row_at(&times, time));
     let gained = (speeds[to] - speeds[from]) / (times[to] - times[from]);
     context.check(
-        Check::new("slide", "acceleration of a race pushed by 160 N", "m/s²", gained)
+        Check::new("slide", "acceleration of a race under 160 N", "m/s²", gained)
             .independent(
                 (160.0 - bore.slip_force(sink)) / MASS,
-                "what is left of the push over the mass",
+                "force less friction, over the mass",
             )
             .relative(1e-2, "the difference of 160 N and 152 N, each to 2e-4"),
     );
@@ -153,7 +153,7 @@ fn pressed(context: &mut CaseContext) -> Result<(), CaseError> {
     let residual = largest(column(&series, "energy_coupled_residual")?.into_iter().map(f64::abs));
     context.check(
         Check::new("balance", "energy unaccounted for, over the heat", "1", residual / heat[to])
-            .closed_form(0.0, "what is stored, lost and moved adds up")
+            .closed_form(0.0, "stored, dissipated and transferred energy add up")
             .absolute(1e-4, "windows and steps are of second order"),
     );
     Ok(())
@@ -237,7 +237,7 @@ fn rotor(context: &mut CaseContext) -> Result<(), CaseError> {
         context.check(
             Check::new(&format!("held_{}", n + 1), "axial force of the tilted race, held by friction", "N", ours)
                 .consistency(reference, "the same race held along its axis")
-                .relative(0.005, "races go 0.3 µm apart until friction holds them, where balls lose 2 N a micrometre")
+                .relative(0.005, "races move apart by 0.3 µm until friction balances them; balls lose 2 N a micrometre")
                 .under("friction_springs")
 .golden(GoldenTolerance::MIXED),
         );
@@ -245,22 +245,22 @@ fn rotor(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "friction_holds",
-            "friction on the race over what balls push it with",
+            "friction on the race over the force of the balls",
             "1",
             rough.by_friction / -rough.by_balls[0],
         )
         .closed_form(1.0, "the race stays")
         .absolute(
             0.03,
-            "the race, released from a hold, swings on its springs: a mean over 36 kHz",
+            "the released race oscillates on its springs at 36 kHz; a mean value",
         ),
     );
     // Half of the shaft's load, carried by normal loads that sum up to 4/π of it.
     let slips_at = 0.1 * 1500.0 * 2.0 / (TAU / 4.0);
     context.check(
-        Check::new("slides", "heat over way of a race that slides out in a smoother bore", "N", smoother.heat / smoother.farthest)
-            .closed_form(slips_at, "μ Σ N of a pressure that goes with the cosine")
-            .relative(0.05, "the bore gives way, so that its pressure is not that of a rigid one, and the loads swing as the shaft does")
+        Check::new("slides", "friction heat over displacement of a race that slides in a smoother bore", "N", smoother.heat / smoother.farthest)
+            .closed_form(slips_at, "μ Σ N of a pressure proportional to the cosine")
+            .relative(0.05, "compliance of the bore changes its pressure, and the loads oscillate with the shaft")
             .under("friction_springs"),
     );
     context.check(
@@ -270,7 +270,7 @@ fn rotor(context: &mut CaseContext) -> Result<(), CaseError> {
             "N",
             -smoother.by_balls[0],
         )
-        .closed_form(slips_at, "μ Σ N of a pressure that goes with the cosine")
+        .closed_form(slips_at, "μ Σ N of a pressure proportional to the cosine")
         .at_most(0.0, "it slides past where friction could hold it, and stays there"),
     );
     Ok(())

@@ -125,7 +125,7 @@ const ORIGIN_FINE: &str = "one Fourier component, polynomials of degree 6";
 
 fn relaxed(context: &mut CaseContext, ours: f64, fine: f64) {
     let reason =
-        "what this mesh leaves, 0.35 %; halved on the next finer one of the table of meshes";
+        "mesh error 0.35 %; halved on the next finer mesh of the table";
     context.check(
         Check::new("static_oracle", "relaxed radial stiffness", "N/m", ours)
             .independent(fine, ORIGIN_FINE)
@@ -145,7 +145,7 @@ fn relaxed(context: &mut CaseContext, ours: f64, fine: f64) {
             exact(&BUSHING, 0.0, 0.0, DEGREE).dynamic_stiffness,
         )
         .converged(fine, "degree 6")
-        .relative(5e-5, "what the last layer at the singular corners leaves, 2e-5"),
+        .relative(5e-5, "error of the last layer at the singular corners, 2e-5"),
     );
 }
 
@@ -184,7 +184,7 @@ fn checks(
                     .independent(exact, ORIGIN)
                     .relative(
                         tolerance,
-                        "what this mesh leaves: up to 0.36 % of K_d, 0.41 % of η_d",
+                        "mesh error: up to 0.36 % of K_d, 0.41 % of η_d",
                     )
                     .golden(GoldenTolerance::MIXED),
             );
@@ -243,7 +243,7 @@ fn meshes(context: &mut CaseContext, exact: f64) -> Result<(), CaseError> {
             errors.last().copied().unwrap_or(f64::NAN),
         )
         .independent(0.0, ORIGIN_FINE)
-        .absolute(2e-3, "half of what is left on the mesh of the other checks, 0.35 %")
+        .absolute(2e-3, "half of the mesh error of the other checks, 0.35 %")
         .golden(GoldenTolerance::MIXED),
     );
     Ok(())

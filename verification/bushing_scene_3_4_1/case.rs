@@ -70,7 +70,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         let at = format!("at {} Hz", answer.frequency);
         let (tolerance, reason) = match answer.frequency > 0.0 {
             true => (4e-3, "errors of mesh and singular corners partly cancel: 0.15 %"),
-            false => (0.012, "what singular corners leave on this mesh: 0.9 %"),
+            false => (0.012, "error at the singular corners on this mesh: 0.9 %"),
         };
         let kd = PARTS * of.dynamic_stiffness;
         context.check(

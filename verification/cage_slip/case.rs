@@ -37,8 +37,8 @@ const WINDOW: f64 = 0.05;
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.assumption(
         "scene",
-        "Everything that 5.4.1 leaves out is as in the scene scenes/cage_600rpm.toml, which names each; the \
-         cage is rigid. Balls and cage start at rolling speed unless a check says otherwise.",
+        "Everything that 5.4.1 omits is as in scenes/cage_600rpm.toml, which names each assumption; the \
+         cage is rigid. Balls and cage start at rolling speed unless a check states otherwise.",
         "scenes/cage_600rpm.toml",
     );
     let mut steps = 0;
@@ -108,7 +108,7 @@ fn driven(context: &mut CaseContext, steps: &mut u64) -> Result<(), CaseError> {
                         ROLLING,
                     )
                     .under("scene")
-                    .relative(2e-5, "creep by which the traction carries the cage's drag: 6e-6, and what a short window leaves of the rattling, as much again; the sum rounded up")
+                    .relative(2e-5, "creep that balances the cage's drag, 6e-6, and as much again from rattling in a short window; rounded up")
                     .golden(GoldenTolerance { relative: 1e-5, absolute: 0.0 }),
             );
         }
@@ -150,7 +150,7 @@ fn driven(context: &mut CaseContext, steps: &mut u64) -> Result<(), CaseError> {
             hundredth,
             full,
             1e-4,
-            "ten times what rolling is known to",
+            "ten times the error of the rolling solution",
         ),
         (
             "slip_gross",
@@ -214,7 +214,7 @@ fn undriven(context: &mut CaseContext, steps: &mut u64) -> Result<(), CaseError>
             "rad",
             undriven,
         )
-        .closed_form(0.0, "nothing turns it")
+        .closed_form(0.0, "no moment acts")
         .absolute(
             0.5 * play,
             "the cage falls onto its guide and rattles within its pockets; rolling would be 2 rad",
@@ -368,7 +368,7 @@ fn impacts(context: &mut CaseContext) -> Result<(), CaseError> {
                     unit,
                     ours,
                 )
-                .closed_form(closed, "two masses and a linear spring that only pushes")
+                .closed_form(closed, "two masses and a unilateral linear spring")
                 .absolute(tolerance, reason),
             );
         }

@@ -67,7 +67,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
 fn assumptions(context: &mut CaseContext) {
     context.assumption(
         "scene",
-        "Everything that 5.4.1 leaves out is as in the scene scenes/cage_600rpm.toml, which names each; the \
+        "Everything that 5.4.1 omits is as in scenes/cage_600rpm.toml, which names each assumption; the \
          cage is rigid, and all starts at rest.",
         "scenes/cage_600rpm.toml, run-up in 0.3 s, window from 0.5 s",
     );

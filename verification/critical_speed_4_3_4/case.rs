@@ -139,13 +139,13 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         .published("critical_speed")
         .under("ramp_time")
         .fit("the ramp time was chosen so that the run-up of one pinned motion meets this number")
-        .relative(0.005, "one motion on pins stands for the rotor on its bearings"),
+        .relative(0.005, "one mode on pins represents the rotor on its bearings"),
     );
     context.check(
         Check::new("critical", "first critical speed, pinned", "rpm", ours)
             .published("critical_speed")
             .under("pins")
-            .relative(0.005, "what agreement would be")
+            .relative(0.005, "tolerance of an agreement")
             .explained(Explanation::new(
                 "The speed at which the deflection is largest while the rotor is run up, not the steady critical speed, which an \
                  independent method puts where ours is. Run up to 10 000 rpm in 0.169 s, a time that the source does not state and that \

@@ -210,7 +210,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         context.check(
             Check::new(
                 id,
-                "energy that no entry names over what contacts hold",
+                "energy error over the strain energy of the contacts",
                 "1",
                 history.residual,
             )
@@ -297,7 +297,7 @@ fn materials(context: &mut CaseContext, pitch: f64) -> Result<(), CaseError> {
     order(
         context,
         "3.4.4",
-        "a material with higher modulus improves the damping of what a dent excites",
+        "a material with higher modulus improves the damping of the excitation by a dent",
         &[
             (
                 "order_2cr",

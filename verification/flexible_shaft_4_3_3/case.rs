@@ -269,14 +269,14 @@ fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
                     "N",
                     force(ours.z, z),
                     2e-6,
-                    "what the axial force of a thousandth of its error turns into over the sag",
+                    "effect of 0.1 % of the axial force over the deflection",
                 ),
                 (
                     "moment about Y",
                     "N·m",
                     force(own, about_y),
                     1e-4,
-                    "that part of the axial force on the grooves, and squares of turns of 4e-3",
+                    "effect of the axial force on the grooves, and squares of rotations of 4e-3",
                 ),
             ] {
                 let id = format!("{id}_{}_{n}", name.split(' ').next().unwrap_or(name));
@@ -299,15 +299,15 @@ fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
 /// That all but 2e-5 of the difference is the one effect that is left out, in the axial force, where it is largest.
 fn what_is_left_out(context: &mut CaseContext) -> Result<(), CaseError> {
     for (id, what, setup, tolerance, reason) in [
-        ("mid_0", "mid-span load", MID_SPAN, 2e-5, "squares of turns of 4e-3"),
-        ("overhung", "overhung load", OVERHUNG, 2e-4, "squares of turns of 1.4e-2 at the free end"),
+        ("mid_0", "mid-span load", MID_SPAN, 2e-5, "squares of rotations of 4e-3"),
+        ("overhung", "overhung load", OVERHUNG, 2e-4, "squares of rotations of 1.4e-2 at the free end"),
     ] {
         let (solution, races) = setup.oracle(true)?;
         let ours = -solution.bearings[0].forces[0].x;
         context.check(
             Check::new(
                 &format!("{id}_pulled_along_x"),
-                &format!("axial force of bearing 1, {what}, beside a rod that shear forces do not stretch"),
+                &format!("axial force of bearing 1, {what}, against a rod that shear forces do not stretch"),
                 "N",
                 ours,
             )
@@ -344,7 +344,7 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
                 )
                 .independent(
                     theirs,
-                    "a converged equilibrium by others, to the digits that are told",
+                    "a converged equilibrium by others, to the digits given",
                 )
                 .relative(5e-3, "another beam's shear coefficient moves the moment by 0.4 %"),
             );
@@ -374,11 +374,11 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
         let force = Check::new(&fx, &format!("axial force on the outer race, {what}"), "N", row.outer[0])
             .published(&fx)
             .under("mesh_stiffness_4_2")
-            .relative(0.03, "the source's races sit in housings, whose give the text says makes this force smaller; Table 4.3 has 7 % of it")
+            .relative(0.03, "housing compliance reduces this force according to the text; 7 % in Table 4.3")
             .golden(GoldenTolerance::REORDERED);
         context.check(match label {
             "15" => force.explained(Explanation::new(
-                "The published force hardly falls from −10 to −15 µm, while it falls by 12 to 14 N with each 5 µm before and the moment goes on \
+                "The published force stays nearly the same from −10 to −15 µm, while it falls by 12 to 14 N with each 5 µm before and the moment goes on \
                  rising evenly. An independent equilibrium agrees with ours, where the force goes on falling.",
                 0.0835,
                 0.003,
@@ -428,7 +428,7 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
             "4.3.3",
             "as the internal interference increases a large reaction moment is generated",
         )
-        .at_least(1.0, "a fifth of what each step brings"),
+        .at_least(1.0, "a fifth of the change in each step"),
     );
     let fall = moments[3][1] - moments[2][1];
     context.check(

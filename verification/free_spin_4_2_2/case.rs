@@ -60,7 +60,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let order = (errors[0] / errors[1]).log2();
     context.check(
         Check::new("order", "order of the growth's error, cells of 1 and 1/2", "1", order)
-            .closed_form(2.0, "four-node elements, chords in the place of arcs")
+            .closed_form(2.0, "four-node elements, chords instead of arcs")
             .absolute(0.4, "two coarse meshes"),
     );
     absolute(context)

@@ -152,7 +152,7 @@ fn exact_contact(context: &mut CaseContext) -> Result<(), CaseError> {
             .independent(0.0, "quadrature of the Hertz potential at 61 radius ratios")
             .absolute(
                 1e-14,
-                "both sides solve for the ellipticity to the last bit; what follows is rounding, 1e-15",
+                "rounding error 1e-15; both solve for the ellipticity to the last bit",
             ),
         );
     }

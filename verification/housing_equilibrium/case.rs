@@ -99,7 +99,7 @@ const VARIANTS: [Variant; 4] = [
     },
     Variant {
         id: "turned",
-        text: "transition, axial load and moments, the whole turned in space",
+        text: "transition, axial load and moments, rotated in space",
         housing: 'C',
         order: Order::Quadratic,
         cells: [16, 1, 2],
@@ -253,19 +253,19 @@ fn compare(context: &mut CaseContext, variant: &Variant) -> Result<Vec<String>, 
     for (what, name, error, limit) in [
         (
             "outer",
-            "outer race's place and tilts",
+            "outer race's displacement and tilts",
             apart(&metres(&ours.outer), &metres(&first.outer)),
             1e-9,
         ),
         (
             "inner",
-            "inner race's place and tilts",
+            "inner race's displacement and tilts",
             apart(&inner(&ours.inner), &inner(&first.inner)),
             5e-11,
         ),
         (
             "loads",
-            "loads that hold the inner race",
+            "loads on the inner race",
             apart(&held(&ours.loads), &held(&first.loads)),
             2e-10,
         ),
@@ -293,7 +293,7 @@ fn compare(context: &mut CaseContext, variant: &Variant) -> Result<Vec<String>, 
         Check::new(
             &format!("{id}_true_distances"),
             &format!(
-                "{text}: outer race's place and tilts, largest difference over the largest of them"
+                "{text}: outer race's displacement and tilts, largest difference over the largest of them"
             ),
             "1",
             distances,

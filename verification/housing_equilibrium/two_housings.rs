@@ -128,12 +128,12 @@ pub(super) fn compare(context: &mut CaseContext) -> Result<(), CaseError> {
         for (what, text, error) in [
             (
                 "outer",
-                "outer race's place and tilts",
+                "outer race's displacement and tilts",
                 apart(&metres(&state.pose), &metres(&oracle.outer[side])),
             ),
             (
                 "load",
-                "what the race puts on its bore, moments over its radius",
+                "load of the race on its bore, moments over its radius",
                 apart(&newtons(&state.load), &newtons(&oracle.loads[side])),
             ),
             (
@@ -170,7 +170,7 @@ pub(super) fn compare(context: &mut CaseContext) -> Result<(), CaseError> {
             "1",
             left,
         )
-        .consistency(0.0, "our forces on the bores against what was applied")
+        .consistency(0.0, "our forces on the bores against the applied loads")
         .absolute(
             1e-11,
             "the last step of Newton's leaves some ulps of the pitch radius times the stiffness",

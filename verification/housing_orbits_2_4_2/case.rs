@@ -232,8 +232,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     assumptions(context);
     context.assumption(
         "quasi_static",
-        "2.4.2 does not say whether the inner race turns while the load does. It stands still here, balls in their first places, \
-         and every position is an equilibrium; the estimate of what inertia would change stands in the table.",
+        "2.4.2 does not say whether the inner race turns while the load does. It is at rest here, balls at their initial positions, and every position is an equilibrium; the table estimates the effect of inertia.",
         "one equilibrium for each 5° of the load",
     );
     context.assumption(
@@ -347,7 +346,7 @@ fn statements(context: &mut CaseContext, turns: &[(char, Turn)], fixed: &[[f64; 
     let ellipse = "B: the orbit is an ellipse";
     let arcs = "A: contact forces are distributed alike in all directions of the load";
     let sideways =
-        "C: the annulus inclines under loads to the side, while downwards it hardly moves";
+        "C: the annulus inclines under lateral loads, but not under loads downwards";
     let most = |id: &str, what: &str, ours: f64, limit: f64, sentence: &str, why: &str| {
         Check::new(id, what, "1", ours).stated(limit, section, sentence).at_most(0.0, why)
     };
@@ -374,7 +373,7 @@ fn statements(context: &mut CaseContext, turns: &[(char, Turn)], fixed: &[[f64; 
         ),
         most(
             "b_ellipse",
-            "B: farthest from the ellipse through its apices",
+            "B: largest distance from the ellipse through its apices",
             off_ellipse(&b.outer),
             0.05,
             ellipse,
@@ -382,7 +381,7 @@ fn statements(context: &mut CaseContext, turns: &[(char, Turn)], fixed: &[[f64; 
         ),
         least(
             "b_ellipse_swapped",
-            "C: farthest from the ellipse through its apices",
+            "C: largest distance from the ellipse through its apices",
             off_ellipse(&c.outer),
             0.05,
             ellipse,
@@ -424,7 +423,7 @@ fn statements(context: &mut CaseContext, turns: &[(char, Turn)], fixed: &[[f64; 
             axes_ratio(&b.outer),
             1.5,
             "B: displacement under loads along Y is larger than in other directions",
-            "half as much again would be seen",
+            "one and a half times as much would fail",
         ),
         least(
             "c_soft_sideways",
@@ -477,7 +476,7 @@ fn statements(context: &mut CaseContext, turns: &[(char, Turn)], fixed: &[[f64; 
         context.check(
             Check::new(
                 &format!("carried_{letter}"),
-                &format!("{letter}: inner race from the outer one, farthest from where it is with a fixed outer race, over its mean radius"),
+                &format!("{letter}: inner race relative to the outer one, largest difference from the case of a fixed outer race, over its mean radius"),
                 "1",
                 largest(apart) / mean(&radii(fixed)),
             )

@@ -167,7 +167,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     .consistency(0.0, "explicit steps, settled, against our own equilibrium of bearing and condensed housing")
                     .absolute(
                         if letter == 'C' && order == Order::Quadratic { 5e-3 } else { 1e-3 },
-                        "what still moves after 2 ms: ten-node housing C, the softest, is off by 1e-3, the others by a tenth of that",
+                        "residual motion after 2 ms: 1e-3 in ten-node housing C, the softest, 1e-4 in the others",
                     ),
                 );
             }
@@ -183,7 +183,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     force,
                 )
                 .closed_form(0.0, "balance of the outer race")
-                .absolute(1e-3, "what still moves after 2 ms, 1e-4 to 2e-4"),
+                .absolute(1e-3, "residual motion after 2 ms, 1e-4 to 2e-4"),
             );
             context.check(
                 Check::new(
@@ -193,7 +193,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     settled.residual,
                 )
                 .closed_form(0.0, "the ledger of both together closes")
-                .absolute(5e-10, "of second order in the window, and most of the work has gone into damping, so that it comes to 5e-11; ten times that"),
+                .absolute(5e-10, "of second order in the window, and damping took most of the work, so that it is 5e-11; ten times that"),
             );
             context
                 .work(&format!("windows, housing {letter}, {}", name_of(order)), settled.windows);

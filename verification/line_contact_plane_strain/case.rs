@@ -297,7 +297,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.table(
         "ways",
         "Differences from Hertz under the load found, in percent (of p₀ for pressures): force on the nodes' shares farther than a cell from \
-         the edge, all of them by root mean square, pressure at the nodes farther than a cell from the edge, and anywhere; \
+         the edge, all of them by root mean square, pressure at the nodes more than one cell from the edge, and anywhere; \
          depth of the von Mises crest in half widths; penetration in nm",
         &[
             "way", "mesh", "size", "indentation", "effort", "load, N/mm", "p₀", "half width", "shares",
@@ -324,7 +324,7 @@ fn edge(context: &mut CaseContext, all: &[(&str, Errors)]) {
              0.0002 b is 2 % of p₀ at the edge itself, and nodes place it within a cell h only, which leaves up to \
              p₀·√(2h/b) = {:.2} p₀ with cells of b/{cells}, {:.2} with b/{coarse}. Smaller cells lower that by the root of their size; at one indentation it is as \
              small as one likes, by where the edge happens to lie. So nothing is asked of that one value; what is asked is the force \
-             on each share farther than a cell from the edge, and the mean square over the whole width.",
+             on each share more than one cell from the edge, and the mean square over the whole width.",
             of("static").join(", "),
             of("static_tet4").join(", "),
             (2.0 / cells).sqrt(),
@@ -340,7 +340,7 @@ fn settled(context: &mut CaseContext, answer: &Answer, rest: &Answer) {
             .consistency(rest.line.load, "explicit steps, settled, against our own equilibrium of the same mesh")
             .relative(
                 1e-5,
-                "what is left of the slowest motion; equilibrium and motion share the law but not the way",
+                "rest of the slowest mode; equilibrium and motion share the law but not the method",
             ),
     );
     let pairs = answer.line.profile.iter().zip(&rest.line.profile);
@@ -386,8 +386,7 @@ fn figure(context: &mut CaseContext, mut curves: Vec<Curve>) -> Result<(), CaseE
 
 fn checks(context: &mut CaseContext, key: &str, found: &[Errors]) {
     let origin = "Hertz, rigid cylinder on a half space in plane strain, under the load found";
-    let mesh = "what the mesh, the contact's own softness and a block of this size leave; a wrong area or radius \
-                is off by more";
+    let mesh = "errors of mesh, contact compliance and block size; a wrong area or radius differs by more";
     let many = if found.len() > 1 {
         format!("farthest of {} indentations", found.len())
     } else {
@@ -413,7 +412,7 @@ fn checks(context: &mut CaseContext, key: &str, found: &[Errors]) {
     );
     check(
         "profile",
-        "nodal force against Hertz' pressure over the node's share, farther than a cell from the edge, over p₀ times the share",
+        "nodal force against Hertz' pressure over the node's share, more than one cell from the edge, over p₀ times the share",
         worst(|e| e.shares),
         origin,
         0.02,
@@ -422,7 +421,7 @@ fn checks(context: &mut CaseContext, key: &str, found: &[Errors]) {
     );
     check(
         "profile_rms",
-        "the same over the whole width, edge too: root mean square over p₀",
+        "the same over the full width with the edge: root mean square over p₀",
         worst(|e| e.mean_square),
         origin,
         0.02,
@@ -442,7 +441,7 @@ fn checks(context: &mut CaseContext, key: &str, found: &[Errors]) {
         worst(|e| e.depth),
         "the exact stresses at the same depths, crest read by the same cubic",
         0.03,
-        "nodes at corners and at middles of edges average different elements, 1.5 and 0.9 % high by turns in ten-node ones, which the cubic evens out and a parabola through three nodes does not (6 % too deep); stress is flat there, 0.1 % less 0.03 half widths off",
+        "nodes at corners and at middles of edges average different elements, 1.5 and 0.9 % too high alternately in ten-node elements; the cubic averages this, a parabola through three nodes does not (6 % too deep)",
     );
 }
 

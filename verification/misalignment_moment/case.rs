@@ -48,8 +48,8 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         "ball_radius_of_5_um_interference",
         "3.4.3 creates a 5 µm interference; Table 3.5 prints a ball of 5.955 mm, which makes 4 µm. The radial \
          clearance is −5 µm, through the ball radius as 4.3.1 has it. Both are inputs of the source and exclude each \
-         other; 3.4.5 repeats neither. The published moment decides: 5.955 mm misses it by 16 %. So the moment is a \
-         fit; the tilts of Table 3.7, which decided nothing, are held against what was so chosen.",
+         other; 3.4.5 repeats neither. The published moment decides between them: 5.955 mm misses it by 16 %. So the moment is a \
+         fit; the tilts of Table 3.7, which decided nothing, are compared with this choice.",
         "ball radius 5.9555 mm, stated as 5 µm",
     );
     context.assumption(
@@ -89,11 +89,9 @@ fn against_the_source(context: &mut CaseContext) -> Result<(), CaseError> {
             .golden(GoldenTolerance::REORDERED);
         context.check(match label {
             "10" => check.explained(Explanation::new(
-                "Not what the stated bearing does. An independent solver agrees with ours, and none of \
-                 the readings of the text that were tried (table) meets this row together with the first two. \
+                "The stated bearing does not have this moment. An independent solver agrees with ours, and none of the interpretations of the text that were tried (table) meets this row together with the first two. \
                  The published rows are not one curve of this model: ln M over ln tilt steepens from 1.95 to 2.6 \
-                 between them, ours from 1.95 to 2.4. Both columns of Table 3.7 share the value, so that it is no \
-                 misprint of one cell.",
+                 between them, ours from 1.95 to 2.4. Both columns of Table 3.7 share the value, which rules out a misprint of one cell.",
                 0.0045,
                 0.0006,
                 &["tilt_10_independent", "no_reading_meets_all_rows", "readings"],
@@ -159,7 +157,7 @@ fn last_row(context: &mut CaseContext) {
     context.check(
         Check::new(
             "no_reading_meets_all_rows",
-            "lowest tilt at 10 N·m of the readings that keep the first two rows",
+            "lowest tilt at 10 N·m of the interpretations that keep the first two rows",
             "°",
             lowest,
         )

@@ -187,7 +187,7 @@ fn tilted(
             outer,
         )
         .closed_form(turned, "moment over conical stiffness")
-        .relative(1e-9, "rounding: a moment about Y turns about Y alone"),
+        .relative(1e-9, "rounding: a moment about Y rotates about Y only"),
     );
     for ((which, ours), above) in [("inner", inner), ("outer", outer)].into_iter().zip(above) {
         let id = format!("{which}_{label}");
@@ -199,7 +199,7 @@ fn tilted(
                 .golden(GoldenTolerance::MIXED)
                 .explained(Explanation::new(
                     "The published bushing resists 414 to 423 N·m/rad, converged relaxed rubber of Table 3.1 292, 1.44 times less. \
-                     Two causes would do, and the text decides between neither: linear tetrahedra lock, and those of some 2.5 mm resist as \
+                     Two causes are possible, and the text decides for neither: linear tetrahedra lock, and those of some 2.5 mm resist as \
                      much (table `four_nodes`); and rubber that has not relaxed resists up to 34.7 times as much. Other thicknesses \
                      of Table 3.6 are softer still. Inner minus outer tilt, which no bushing changes, is as published.",
                     *above,

@@ -34,7 +34,7 @@ use crate::solids::largest;
 
 pub const CASE: Case = Case {
     id: "reduced_housing",
-    title: "A housing reduced to shapes, against explicit steps of the whole one",
+    title: "A reduced housing against explicit steps of all its elements",
     section: "2.2.4, 2.4.2, 2.4.3",
     tier: Tier::Smoke,
     published: include_str!("published.toml"),
@@ -240,7 +240,7 @@ fn statics(
     let size = |state: &BoreState| state.pose[0].hypot(state.pose[1]);
     context.check(
         Check::new("static_place", "outer race under 250 N, from its place", "nm", 1e9 * size(&state))
-            .consistency(1e9 * size(&exact), "equilibrium with the compliance of shapes, and with the whole condensed one")
+            .consistency(1e9 * size(&exact), "equilibrium with the compliance of the modes, and with that of the condensed housing")
             .absolute(
                 1e9 * size(&exact).powi(2) / across,
                 "a bore that lets no node go has static answers of its own; what is left is the chord of the race's way across nodes, δ²/2r, \
@@ -257,11 +257,11 @@ fn statics(
         away = largest([away, (now[0] - first[0]).hypot(now[1] - first[1])]);
     }
     context.check(
-        Check::new("stays", "in motion from there: farthest in 0.2 ms", "nm", 1e9 * away)
-            .consistency(0.0, "our equilibrium, held against our motion")
+        Check::new("stays", "in motion from there: largest distance in 0.2 ms", "nm", 1e9 * away)
+            .consistency(0.0, "our equilibrium against our motion")
             .absolute(
                 1e-3 * 1e9 * size(&exact),
-                "what a linear bore leaves out of the race's turns and shifts",
+                "second-order terms of the race's rotations and displacements, omitted by a linear bore",
             ),
     );
     Ok(())
@@ -394,7 +394,7 @@ fn compare(
     Ok(Compared { explicit, shapes, swing, errors })
 }
 
-const WAYS: &str = "shapes in one state with the bearing, against explicit steps of all elements";
+const WAYS: &str = "modes and bearing in one state, against explicit steps of all elements";
 
 fn judge(context: &mut CaseContext, id: &str, what: &str, found: &Compared, most: f64) {
     context.check(
@@ -405,7 +405,7 @@ fn judge(context: &mut CaseContext, id: &str, what: &str, found: &Compared, most
             found.errors[DEFAULT],
         )
         .consistency(most, WAYS)
-        .at_most(0.0, "natural shapes up to twice the frequency of a ball between its races: one per cent is asked for"),
+        .at_most(0.0, "component modes up to twice the frequency of a ball between its races: 1 % is required"),
     );
 }
 
@@ -414,7 +414,7 @@ fn converges(context: &mut CaseContext, blow: &Compared) {
     context.check(
         Check::new(
             "blow_more_shapes",
-            "a blow of 500 N over 0.4 ms: the same with a quarter of these frequencies over that",
+            "impact of 500 N over 0.4 ms: the same with a quarter of these frequencies over that",
             "1",
             blow.errors[0] / blow.errors[DEFAULT],
         )
@@ -443,12 +443,12 @@ fn inertia(
     context.check(
         Check::new(
             "quasi_static",
-            "the turning load by equilibria: farthest of the outer race from the explicit run, of its swing",
+            "the rotating load by equilibria: largest distance of the outer race from the explicit run, over its peak-to-peak motion",
             "1",
             missed,
         )
         .consistency(5.0 * found.errors[DEFAULT], "equilibria of the condensed housing against explicit steps")
-        .at_least(0.0, "they leave out what a reduced housing has, inertia: else the comparison would show nothing")
+        .at_least(0.0, "they omit inertia, which a reduced housing has")
         .golden(GoldenTolerance { relative: 1e-2, absolute: 0.0 }),
     );
     Ok(())

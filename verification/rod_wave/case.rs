@@ -17,7 +17,7 @@ mod oracle;
 
 pub const CASE: Case = Case {
     id: "rod_wave",
-    title: "A push along a rod",
+    title: "Wave along a rod",
     section: "2.2.2, (2.2)–(2.7)",
     tier: Tier::Smoke,
     published: include_str!("published.toml"),
@@ -61,7 +61,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         let passage = passage(order, cells, method)?;
         let found = (STATIONS[1] - STATIONS[0]) / (passage.times[1] - passage.times[0]);
         context.check(
-            Check::new(&format!("speed_{key}"), &format!("{key}: speed of the push"), "m/s", found)
+            Check::new(&format!("speed_{key}"), &format!("{key}: speed of the wave"), "m/s", found)
                 .closed_form(speed, "√(E/ρ) of a thin rod")
                 .relative(
                     1e-3,
@@ -73,12 +73,12 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         context.check(
             Check::new(
                 &format!("behind_{key}"),
-                &format!("{key}: displacement behind the push, 0.06 m from the end"),
+                &format!("{key}: displacement behind the wave, 0.06 m from the end"),
                 "m",
                 passage.behind,
             )
             .closed_form(behind, "impulse over ρ A c")
-            .relative(2e-4, "the impulse is kept; what rings behind the front leaves 3e-5")
+            .relative(2e-4, "the impulse is conserved; oscillations behind the front leave 3e-5")
             .golden(GoldenTolerance::MIXED),
         );
         rows.push(vec![

@@ -100,8 +100,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.assumption(name, text, default);
     context.assumption(
         "shaft_speed",
-        "2.4.2 does not say whether the inner race turns while the load does. It stands still here; the same at the \
-         2000 rpm of 2.4.1 stands beside it.",
+        "2.4.2 does not say whether the inner race turns while the load does. It is at rest here; 2000 rpm as in 2.4.1 is shown as well.",
         "0",
     );
     context.assumption(
@@ -111,8 +110,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     context.assumption(
         "traction",
-        "Neither friction nor damping is stated. Traction keeps the balls where they are (or rolling); without it the load, \
-         going round, would push them around.",
+        "Neither friction nor damping is stated. Traction keeps the balls where they are (or rolling); without it the rotating load would move them.",
         "κ = 0.07 regularised below 0.05 m/s, Hunt–Crossley α = 0.3 s/m",
     );
     let still = revolution(0.0)?;
@@ -199,7 +197,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             "1",
             distance(last, still.start) / ours.mean_radius,
         )
-        .consistency(0.0, "our start: an elastic body under the same load stands at the same place")
+        .consistency(0.0, "our start: an elastic body under the same load has the same displacement")
         .absolute(5e-4, "traction, which the equilibrium at the start has not yet, carries some 1e-4 of the load"),
     );
     let columns = [

@@ -128,8 +128,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     context.assumption(
         "race_turns",
-        "The source gives a race the section's orientation; here turns are held by springs, with the printed stiffness on an arm of the shaft's \
-         diameter.",
+        "The source gives a race the section's orientation; here rotational springs, with the printed stiffness on an arm of the shaft's diameter, prescribe it.",
         "1.8e6 N m/rad",
     );
     let ten = |layer: &str, around: &str| {
@@ -175,7 +174,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             "1",
             errors[2] / errors[1],
         )
-        .consistency(1.0, "masses of the cells, 1.06e-5 kg m beside the axis")
+        .consistency(1.0, "masses of the cells, 1.06e-5 kg m off the axis")
         .at_most(0.3, "0.4 % of the orbit are left, at rest as at speed"),
     );
     context.check(
@@ -227,7 +226,7 @@ fn judge(context: &mut CaseContext, key: &str, what: &str, explicit: &Way, reduc
     context.check(
         Check::new(
             &format!("{key}_apart"),
-            &format!("{what}: farthest from each other, over the orbit"),
+            &format!("{what}: largest distance from each other, over the orbit"),
             "1",
             explicit.off(reduced),
         )
@@ -241,7 +240,7 @@ fn judge(context: &mut CaseContext, key: &str, what: &str, explicit: &Way, reduc
             "1",
             explicit.residual.unwrap_or(f64::NAN),
         )
-        .closed_form(0.0, "what is stored, lost and moved adds up")
+        .closed_form(0.0, "stored, dissipated and transferred energy add up")
         .absolute(
             3e-4,
             "1e-3 is asked for; windows and steps of second order leave 2e-6 to 1.2e-4",

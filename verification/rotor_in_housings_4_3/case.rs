@@ -117,7 +117,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     context.assumption(
         "diametral_housing_clearance",
-        "Whether the housing's clearance is radial or diametral is not said: of +5 µm the half follows, the whole would let race 1 rise by 19 µm.",
+        "Whether the housing's clearance is radial or diametral is not stated: half of +5 µm agrees, all of it would raise race 1 by 19 µm.",
         "half of it on each side",
     );
     context.assumption(
@@ -218,8 +218,7 @@ fn table_4_3(context: &mut CaseContext) -> Result<(), CaseError> {
                     .under("housing_dimensions")
                     .relative(0.06, "as of the other numbers")
                     .explained(Explanation::new(
-                        "In the source friction holds the outer races along X against blocks that give, and the more clearance the less they hold; here nothing \
-                         lets them move along X. An outer race that gives along X lets the force fall; by how much the source's friction gives is not stated.",
+                        "In the source friction fixes the outer races along X on compliant blocks, the less the larger the clearance; here they are axially fixed. An axially compliant outer race reduces the force; the source does not state its compliance.",
                         excess,
                         0.01,
                         &["axial_give"],
@@ -261,7 +260,7 @@ fn table_4_3(context: &mut CaseContext) -> Result<(), CaseError> {
                 (z[1] - z[0]).min(z[2] - z[1]),
             )
             .stated(0.0, "4.3.3", "from a fixed to a clearance fit the support stiffness reduces and the displacement increases")
-            .at_least(0.1, "ten times what the mesh leaves open"),
+            .at_least(0.1, "ten times the mesh error"),
         );
     }
     // The top carries bearing 1, the foot bearing 2; under a load upwards it is the other way round.
@@ -384,7 +383,7 @@ fn seats(context: &mut CaseContext) -> Result<(), CaseError> {
                 fall,
             )
             .stated(1.0, "4.3.2", sentence)
-            .at_most(0.05, "far above what the search leaves open"),
+            .at_most(0.05, "far above the tolerance of the search"),
         );
         context.check(
             Check::new(
@@ -508,16 +507,16 @@ fn compliance(context: &mut CaseContext) -> Result<(), CaseError> {
             let (most, reason) = match name {
                 "shaft_mid_y" => (
                     3e-8,
-                    "a hundredth of the largest shift by friction, whose moments are not quite steady; half of what the balls' passing makes of it",
+                    "1 % of the largest shift by friction, whose moments are not quite steady; half of the motion by passing balls",
                 ),
                 "shaft_mid_z" => (
                     1.5e-8,
-                    "less than half of what the balls' passing makes of it, so that a middle that stood still would fail",
+                    "less than half of the motion by passing balls, so that no motion would fail",
                 ),
                 _ => (1e-9, "a nanometre"),
             };
             let what = format!(
-                "{name} in motion about its shift by friction, off its equilibria at the same angles of the balls, which make it swing by {:.1} nm, {clearance} µm",
+                "{name} in motion about its shift by friction, difference from equilibria at the same ball angles, whose peak-to-peak motion is {:.1} nm, {clearance} µm",
                 1e9 * swing
             );
             context.check(
@@ -540,13 +539,13 @@ fn compliance(context: &mut CaseContext) -> Result<(), CaseError> {
             let [.., half_y, half_z] = halved;
             // In the mirror the shaft turns the other way round, and so does what friction does: along Y it is odd in its size, along Z even.
             for (axis, ratio, expected, most, reason) in [
-                ("y", 1e9 * half_y.shift / mid_y, 0.5, 0.02, "what is of third order"),
+                ("y", 1e9 * half_y.shift / mid_y, 0.5, 0.02, "terms of third order"),
                 (
                     "z",
                     1e9 * half_z.shift / mid_z,
                     0.25,
                     0.04,
-                    "what is of fourth order, and ten nanometres that are not of friction",
+                    "terms of fourth order, and 10 nm that are not due to friction",
                 ),
             ] {
                 context.check(
@@ -573,7 +572,7 @@ fn compliance(context: &mut CaseContext) -> Result<(), CaseError> {
                     least,
                 )
                 .stated(0.0, "4.3.1", "with interference all balls are in contact")
-                .at_least(10.0, "far above what rounding makes of a ball that is loose"),
+                .at_least(10.0, "far above rounding error of an unloaded ball"),
             );
         }
     }
@@ -581,7 +580,7 @@ fn compliance(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "lateral_falls",
-            "largest ratio of the lateral swing in motion to that with 5 µm less interference",
+            "largest ratio of the lateral peak-to-peak motion to that with 5 µm less interference",
             "1",
             largest(ratios),
         )

@@ -177,12 +177,12 @@ fn ways(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Result<
         context.check(
             Check::new(
                 id,
-                &format!("how much farther inner race 1 goes along {along} in housings than with fixed races"),
+                &format!("additional displacement of inner race 1 along {along} in housings than with fixed races"),
                 "1",
                 gain(i),
             )
             .stated(0.0, "4.3.4", "the displacement is significantly larger along +Z, +Y and −Y")
-            .at_least(0.05, "two and a half times what the accuracy of the steps moves single rows by"),
+            .at_least(0.05, "2.5 times the step error of single rows"),
         );
     }
     context.check(
@@ -190,7 +190,7 @@ fn ways(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Result<
             .stated(0.0, "4.3.4", "the displacement is nearly the same along −Z")
             .absolute(
                 0.03,
-                "what the accuracy of the steps moves single rows by, 2 %, and the foot's own give",
+                "step error of single rows, 2 %, and the compliance of the foot",
             ),
     );
     for (id, axis, of) in
@@ -249,7 +249,7 @@ fn give(context: &mut CaseContext, in_blocks: &Done) -> Result<(), CaseError> {
         Check::new(
             "give",
             &format!(
-                "way of outer race 1 along +Z over the force on the block's top, mean of {} rows at resonance",
+                "displacement of outer race 1 along +Z over the force on the top of the block, mean of {} rows at resonance",
                 plus_z.1
             ),
             "µm/kN",
@@ -271,7 +271,7 @@ fn give(context: &mut CaseContext, in_blocks: &Done) -> Result<(), CaseError> {
                 "1",
                 other / minus_z.0,
             )
-            .stated(1.0, "4.3.4", "the support stiffness is large along −Z, where the block stands on the ground, and reduced in the other directions")
+            .stated(1.0, "4.3.4", "the support stiffness is large along −Z, where the block rests on the ground, and reduced in the other directions")
             .at_least(1.0, "twice as soft; the block's shape decides how far above"),
         );
     }
@@ -337,7 +337,7 @@ fn moments(context: &mut CaseContext, in_blocks: &Done) -> Result<(), CaseError>
                 moment(done) / moment(before.1),
             )
             .stated(1.0, "4.3.4", "the moment is reduced with a positive bearing internal clearance")
-            .at_most(0.01, "five times what the accuracy of the steps moves it by (0.01 against 0.002: 0.2 %)"),
+            .at_most(0.01, "five times its step error (0.01 against 0.002: 0.2 %)"),
         );
         before = (*radial, done);
     }
@@ -358,7 +358,7 @@ fn moments(context: &mut CaseContext, in_blocks: &Done) -> Result<(), CaseError>
             )
             .relative(
                 0.05,
-                "housings tilt with their races, and means of squares stand for rows that ripple",
+                "housings tilt with their races, and rms values replace rows with a ripple",
             ),
         );
     }

@@ -54,7 +54,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     );
     context.assumption(
         "maxwell_constants",
-        "The Maxwell constants of this rubber are not printed; those of Table 3.1 stand in",
+        "The Maxwell constants of this rubber are not printed; those of Table 3.1 are used",
         "γ and τ of Table 3.1",
     );
     named_materials(context)?;

@@ -176,7 +176,7 @@ fn checks(context: &mut CaseContext, all: &[[f64; 4]]) {
         .converged(1.0, "an element that does not lock")
         .at_least(
             100.0,
-            "what keeps the volume of each element keeps the body from moving: stiffness follows B",
+            "volumetric locking: stiffness grows with B",
         ),
     );
     context.check(

@@ -150,9 +150,9 @@ fn settling(context: &mut CaseContext) -> Result<(), CaseError> {
         let [position, load] = settled_off(&lengths, loads)?;
         let origin = "zero: the equilibrium by energy minimised over all coordinates at once";
         let (tolerance, reason) = match id {
-            "axial" => (1e-6, "what still moves 20 ms after the last change of load: 1.6e-7"),
-            "combined" => (1e-7, "what still moves 20 ms after the last change of load: 1.1e-8"),
-            _ => (5e-9, "what still moves 20 ms after the last change of load: up to 4e-10"),
+            "axial" => (1e-6, "residual motion 20 ms after the last change of load: 1.6e-7"),
+            "combined" => (1e-7, "residual motion 20 ms after the last change of load: 1.1e-8"),
+            _ => (5e-9, "residual motion 20 ms after the last change of load: up to 4e-10"),
         };
         context.check(
             Check::new(
@@ -172,7 +172,7 @@ fn settling(context: &mut CaseContext) -> Result<(), CaseError> {
                 load,
             )
             .independent(0.0, origin)
-            .absolute(2e-8, "what still moves: 3e-9 of the largest load at most, the soft motions carry none of it"),
+            .absolute(2e-8, "residual motion: at most 3e-9 of the largest load"),
         );
     }
     Ok(())
@@ -286,7 +286,7 @@ fn turning(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "moment_beside_static",
-            "mean moment at 0.15° tilt, 1000 rpm, beside the resting bearing's",
+            "mean moment at 0.15° tilt, 1000 rpm, against the bearing at rest",
             "N·m",
             ours,
         )

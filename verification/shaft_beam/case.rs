@@ -205,7 +205,7 @@ fn order(context: &mut CaseContext) -> Result<(), CaseError> {
             "1",
             order,
         )
-        .closed_form(8.0, "twice the degree of the shapes")
+        .closed_form(8.0, "twice the degree of the shape functions")
         .absolute(1.0, "two elements a half wave are not yet all the way there"),
     );
     let rows = [2, 4, 8].iter().zip(&errors);

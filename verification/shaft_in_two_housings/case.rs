@@ -23,7 +23,7 @@ use crate::solids::largest;
 
 pub const CASE: Case = Case {
     id: "shaft_in_two_housings",
-    title: "A shaft on two bearings in two housings: equilibria, shapes and explicit steps",
+    title: "A shaft on two bearings in two housings: equilibria, modes and explicit steps",
     section: "2.2.4, 4.2",
     tier: Tier::Full,
     published: include_str!("published.toml"),

@@ -240,8 +240,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 .absolute(1e-10, reason),
         );
     }
-    let reason = "Newton's last step leaves what rounding of places makes: some ulps of the pitch radius times the stiffness of \
-                  two bearings, 1e-8 N, of some hundred";
+    let reason = "rounding of coordinates: some ulps of the pitch radius times the stiffness of two bearings, 1e-8 N of some 100 N";
     context.check(
         Check::new(
             "sum",
@@ -249,7 +248,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             "1",
             worst.sum,
         )
-        .consistency(0.0, "our loads of balls against what was applied")
+        .consistency(0.0, "our ball loads against the applied loads")
         .absolute(5e-11, reason),
     );
     context.work("Newton iterations, 50 cold starts", iterations as u64);

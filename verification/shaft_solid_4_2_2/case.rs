@@ -21,7 +21,7 @@ use crate::solids::{STEEL, free_body, mesh_of, name_of, size_of};
 
 pub const CASE: Case = Case {
     id: "shaft_solid_4_2_2",
-    title: "A flexible shaft of tetrahedra: whole, reduced and as a beam",
+    title: "A flexible shaft of tetrahedra: full, reduced and as a beam",
     section: "2.2.2, 4.2.2, 4.2.3, Table 4.1",
     tier: Tier::Smoke,
     published: include_str!("published.toml"),
@@ -184,15 +184,15 @@ fn bending(context: &mut CaseContext) -> Result<(), CaseError> {
             )
             .closed_form(
                 wanted,
-                "twice the degree of the shapes: work of the load converges as energy does",
+                "twice the degree of the shape functions: work of the load converges as energy does",
             )
-            .absolute(room, "three meshes whose curved edges converge beside the shapes"),
+            .absolute(room, "three meshes; curved edges converge as well as the interpolation"),
         );
         if order == Order::Quadratic {
             context.check(
                 Check::new("sag_tet10", "sag of the finest tet10 mesh under 1 N", "m", sags[2])
                     .closed_form(exact, "Timoshenko's beam with Hutchinson's shear coefficient")
-                    .relative(3e-3, "asked for; loads spread evenly over sections leave 1e-4 beside beam theory")
+                    .relative(3e-3, "required; loads spread evenly over sections differ from beam theory by 1e-4")
                     .golden(GoldenTolerance::MIXED),
             );
         }
@@ -260,7 +260,7 @@ fn reduced(context: &mut CaseContext, whole: &[f64]) -> Result<(), CaseError> {
         let what = format!("free shaft over {INTERVALS} intervals: bending mode {}", index + 1);
         context.check(
             Check::new(&format!("reduced_free_{}", index + 1), &what, "Hz", *ours)
-                .consistency(*theirs, "the whole solid by Lanczos' method")
+                .consistency(*theirs, "the full solid by Lanczos' method")
                 .relative(1e-3, "asked for up to 2 kHz")
                 .golden(GoldenTolerance::MIXED),
         );
@@ -270,7 +270,7 @@ fn reduced(context: &mut CaseContext, whole: &[f64]) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "pinned_count",
-            "motions of the whole solid between pins below 2 kHz, both directions",
+            "modes of the full solid between pins below 2 kHz, both directions",
             "1",
             whole.len() as f64,
         )
@@ -307,28 +307,28 @@ fn reduced(context: &mut CaseContext, whole: &[f64]) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "reduced_pinned",
-            "between pins, natural shapes to 5 kHz (3) and static answers: largest error below 2 kHz",
+            "between pins, component modes to 5 kHz (3) and static correction modes: largest error below 2 kHz",
             "1",
             worst(&plane, 3, true)?,
         )
-        .consistency(0.0, "the whole solid by subspace iteration, the same sections held")
+        .consistency(0.0, "the full solid by subspace iteration, the same sections fixed")
         .absolute(1e-3, "asked for up to 2 kHz"),
     );
     let falls = |of: &[f64]| of.windows(2).map(|pair| pair[1] / pair[0]).fold(0.0, f64::max);
     context.check(
         Check::new(
             "falls_with_shapes",
-            "between pins, without static answers: largest ratio of errors of 4, 6, 8 and 12 natural shapes to those before",
+            "between pins, without static correction modes: largest ratio of errors of 4, 6, 8 and 12 component modes to the previous ones",
             "1",
             falls(&without[1..]),
         )
         .consistency(1.0, "errors that fall")
-        .at_most(0.3, "errors of cut series fall as a power of their terms: two more of n shapes"),
+        .at_most(0.3, "truncation error falls as a power of the number of terms, by two more of n modes"),
     );
     context.check(
         Check::new(
             "falls_with_static_answers",
-            "between pins, with static answers: error of two natural shapes over that of none",
+            "between pins, with static correction modes: error of two component modes over that of none",
             "1",
             with[1] / with[0],
         )
@@ -348,7 +348,7 @@ fn reduced(context: &mut CaseContext, whole: &[f64]) -> Result<(), CaseError> {
         Check::new("order_stations", "order of that error, 16 to 32 intervals", "1", order)
             .closed_form(
                 2.0,
-                "shapes of least strain energy have a constant shear force from station to station",
+                "modes of least strain energy have a constant shear force from station to station",
             )
             .absolute(0.3, "the mesh of one layer to an interval moves little with the stations"),
     );
@@ -357,11 +357,11 @@ fn reduced(context: &mut CaseContext, whole: &[f64]) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "stations_suffice",
-            "between pins, all shapes over 16 intervals: largest error below 2 kHz",
+            "between pins, all modes over 16 intervals: largest error below 2 kHz",
             "1",
             errors[1],
         )
-        .consistency(0.0, "the whole solid")
+        .consistency(0.0, "the full solid")
         .absolute(1e-3, "asked for up to 2 kHz; scenes have 32 intervals or more"),
     );
     Ok(())

@@ -383,7 +383,7 @@ fn manufactured(context: &mut CaseContext) -> Result<(), CaseError> {
                 errors[2],
             )
             .closed_form(0.0, "the given field")
-            .absolute(coarse, "three to four times what a mesh this coarse leaves; guards against a right order of a wrong limit")
+            .absolute(coarse, "three to four times the error of this coarse mesh; guards against the right order of a wrong limit")
             .golden(GoldenTolerance::MIXED),
         );
     }

@@ -95,7 +95,7 @@ pub fn rubber(modulus: f64, gammas: f64, pull: ChainPull) -> Result<Elastomer, E
 pub fn rubber_of_3_3(context: &mut CaseContext) -> Result<Elastomer, ElastomerError> {
     context.assumption(
         "rubber",
-        "The constants of this bushing's rubber are not printed; those of Table 3.1 stand in",
+        "The constants of this bushing's rubber are not printed; those of Table 3.1 are used",
         "Table 3.1",
     );
     rubber(MODULUS, 1.0, ChainPull::FiveTerms)

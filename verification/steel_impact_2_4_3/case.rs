@@ -221,7 +221,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "momentum",
-            "momentum of inner race and balls and what the outer race took, over the impact",
+            "momentum of inner race and balls plus that passed to the outer race, over the impulse",
             "1",
             (steel.momentum + steel.impulse) / put_in,
         )
@@ -231,7 +231,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         )
         .absolute(
             4e-5,
-            "the force is summed from samples 20 windows apart by the trapezoidal rule, which leaves 4e-6",
+            "error of the trapezoidal rule over samples every 20 coupling steps, 4e-6",
         ),
     );
     context.check(
@@ -250,7 +250,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         Check::new("peak", "largest force of the balls on the outer race", "N", peak)
             .consistency(
                 lowest(model.iter().map(|[_, force]| *force)),
-                "the whole model against two lumped masses of it, on the independent statics' curve and our own condensed support",
+                "the full model against two lumped masses on the curve of the independent statics and our own condensed support",
             )
             .relative(0.02, "the balls, 0.055 kg of 0.4 kg, are not lumped halves; the bushing's own mass is left out")
             .golden(GoldenTolerance { relative: 1e-6, absolute: 0.0 }),
@@ -263,14 +263,14 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "slow_decay",
-            "swing of the force in the last 2 ms over that just after the impact",
+            "amplitude of the force in the last 2 ms over that just after the impact",
             "1",
             kept(&steel),
         )
         .stated(1.0, "2.4.3", "in steel the oscillation decays slowly, over much longer than 0.1 s")
         .absolute(
             0.3,
-            "8 ms are a twelfth of 0.1 s, in which next to nothing is to be lost; beats of the two masses change the swing meanwhile",
+            "8 ms are a twelfth of 0.1 s, in which little is lost; beats of the two masses change the amplitude",
         ),
     );
     context.check(

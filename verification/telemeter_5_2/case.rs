@@ -115,7 +115,7 @@ fn stated(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "least_reflection",
-            "frequency of least reflection over the natural one, 5 mm apart",
+            "frequency of least reflection over the natural one, distance 5 mm",
             "1",
             lowest,
         )
@@ -137,7 +137,7 @@ fn stated(context: &mut CaseContext) -> Result<(), CaseError> {
         )
         .stated(1.0, "5.2.1.2", "the signal grows with the offset")
         .under("circuit")
-        .at_least(0.3, "twice where the offset is small beside the distance, 1.4 times where it is 1.4 distances"),
+        .at_least(0.3, "factor 2 where the offset is small compared with the distance, 1.4 where it is 1.4 distances"),
     );
     let [straight, frequency] = turning(OFFSET, 0.0)?;
     let mut spread: f64 = 0.0;
@@ -222,9 +222,9 @@ fn rows(context: &mut CaseContext) -> Result<(), CaseError> {
         swing = [swing[0].min(expected), swing[1].max(expected)];
     }
     context.check(
-        Check::new("rows", "largest error of 21 rows over what the signal changes by in 12 ms", "1", worst / (swing[1] - swing[0]))
+        Check::new("rows", "largest error of 21 rows over the change of the signal in 12 ms", "1", worst / (swing[1] - swing[0]))
             .independent(0.0, "Neumann's double sum where the columns say that the cage is")
-            .absolute(1e-3, "the outer race tilts by some 1e-6, which no column of the cage has; out of the plane of tilt the runout leans with it"),
+            .absolute(1e-3, "the outer race tilts by about 1e-6, which the columns of the cage do not hold"),
     );
     let [felt, speed, time] = ["top_acceleration", "outer_velocity_z", "time"].map(column);
     let (felt, speed, time) = (felt?, speed?, time?);
@@ -235,9 +235,9 @@ fn rows(context: &mut CaseContext) -> Result<(), CaseError> {
         largest = largest.max(felt[row].abs());
     }
     context.check(
-        Check::new("accelerometer", "largest error of the accelerometer over its largest reading", "1", error / largest)
-            .independent(0.0, "differences of the outer race's velocity over 2 us; its top turns with it by 1e-6 of that")
-            .absolute(0.02, "contacts swing with periods of 60 us, and are entered within a row"),
+        Check::new("accelerometer", "largest error of the accelerometer over its largest value", "1", error / largest)
+            .independent(0.0, "differences of the outer race's velocity over 2 us; rotation of its top adds 1e-6 of that")
+            .absolute(0.02, "contacts oscillate with periods of 60 us, and close within a row"),
     );
     Ok(())
 }

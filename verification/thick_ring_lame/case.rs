@@ -101,7 +101,7 @@ fn checks(context: &mut CaseContext, key: &str, order: Order, found: [f64; 3], s
             .relative(
                 tolerance,
                 match order {
-                    Order::Quadratic => "what this mesh leaves: 1e-4 of displacements, 1e-5 of the mean of stresses at the bore, whose errors alternate",
+                    Order::Quadratic => "mesh error: 1e-4 of displacements, 1e-5 of the mean stress at the bore, whose nodal errors alternate",
                     Order::Linear => "chords for arcs and one stress per element: second order in 0.07 of the circle, \
                                       first order for the stress at the surface",
                 },

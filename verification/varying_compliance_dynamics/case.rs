@@ -250,7 +250,7 @@ fn amplitudes(context: &mut CaseContext, pitches: &[Pitch]) {
                         "4.3.1",
                         "less clearance, less amplitude; the looser bearing is independent statics'",
                     )
-                    .at_most(1.0, "a real difference: far above what either side is off"),
+                    .at_most(1.0, "a real difference, far above both errors"),
                 );
             }
             let millimetres = 1e3 * pitch.uneven * 26e-3;
@@ -274,7 +274,7 @@ fn amplitudes(context: &mut CaseContext, pitches: &[Pitch]) {
     context.table("amplitudes", "Varying compliance at 1000 rpm and 1500 N", &columns, rows);
     let largest = pitches.iter().map(|pitch| pitch.uneven).fold(0.0, f64::max);
     context.check(
-        Check::new("spacing", "farthest a ball is from its even place", "mm", 26.0 * largest)
+        Check::new("spacing", "largest deviation of a ball from even spacing", "mm", 26.0 * largest)
             .closed_form(0.247, "pocket radius 6.200 less ball radius 5.953 mm, Table 4.1")
             .at_most(0.206, "a sixth of the pocket clearance: a cage would touch nothing"),
     );
@@ -308,7 +308,7 @@ fn without_traction(context: &mut CaseContext) -> Result<(), CaseError> {
     context.check(
         Check::new(
             "frictionless_bunching",
-            "farthest a ball is from its even place after two pitches without traction",
+            "largest deviation of a ball from even spacing after two pitches without traction",
             "rad",
             uneven,
         )
@@ -383,8 +383,8 @@ fn dynamic_effects(context: &mut CaseContext) -> Result<(), CaseError> {
                     )
                     .relative(
                         if rpm < 10_000.0 { 0.01 } else { 0.03 },
-                        "the linear model lets no contact open or close by the swing itself: up to 0.6 % below 10 000 rpm, 2 % there. \
-                         At 500 and 1000 rpm it says no more than that inertia hardly matters",
+                        "in the linear model the oscillation opens and closes no contact: up to 0.6 % below 10 000 rpm, 2 % there. \
+                         At 500 and 1000 rpm it shows that inertia does not matter",
                     ),
                 );
                 row.extend([ours, theirs].map(|ratio| format!("{:+.2} %", 100.0 * (ratio - 1.0))));
