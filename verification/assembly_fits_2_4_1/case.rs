@@ -294,10 +294,7 @@ fn statements(context: &mut CaseContext, curves: &[Curves]) {
             0.0,
             "a linear housing that the race touches all round has one stiffness, whatever the fit",
         )
-        .absolute(
-            1e-9,
-            "curvature of the ball loads over the same range",
-        ),
+        .absolute(1e-9, "curvature of the ball loads over the same range"),
     );
     context.check(
         Check::new(

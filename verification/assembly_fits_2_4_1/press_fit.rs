@@ -149,7 +149,10 @@ fn lame(context: &mut CaseContext) -> Result<(), CaseError> {
                 1e-6 * ours.mean,
             )
             .closed_form(1e-6 * known(stiffness), origin)
-            .relative(2e-4, "error of 32 ten-node elements around 5e-5; the compliance of the interface is 8 %")
+            .relative(
+                2e-4,
+                "error of 32 ten-node elements around 5e-5; the compliance of the interface is 8 %",
+            )
             .golden(GoldenTolerance { relative: 1e-6, absolute: 0.0 }),
         );
     }

@@ -149,10 +149,7 @@ pub(super) fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                 "1",
                 (pair[0] / pair[1]).ln() / 3_f64.ln(),
             )
-            .closed_form(
-                2.0,
-                "midpoints of equal slices, slip changes sign in the middle of one",
-            )
+            .closed_form(2.0, "midpoints of equal slices, slip changes sign in the middle of one")
             .absolute(0.01, "the next order, 1/(15)² of the first ratio"),
         );
     }

@@ -308,7 +308,7 @@ fn figure(context: &mut CaseContext, hits: &[Hit]) -> Result<(), CaseError> {
     context.figure(
         "reaction",
         svg,
-        "As in Fig. 3.20: thinner bushings swing faster and come to rest sooner.",
+        "As in Fig. 3.20: thinner bushings oscillate faster and settle sooner.",
     );
     Ok(())
 }

@@ -67,8 +67,7 @@ fn row_at(times: &[f64], time: f64) -> usize {
     after.min(times.len() - 1)
 }
 
-const GIVES_WAY: &str =
-    "compliance of the bore, 2e-4 of its contact, and small oscillations";
+const GIVES_WAY: &str = "compliance of the bore, 2e-4 of its contact, and small oscillations";
 
 fn pressed(context: &mut CaseContext) -> Result<(), CaseError> {
     // Below what holds it.
@@ -250,18 +249,23 @@ fn rotor(context: &mut CaseContext) -> Result<(), CaseError> {
             rough.by_friction / -rough.by_balls[0],
         )
         .closed_form(1.0, "the race stays")
-        .absolute(
-            0.03,
-            "the released race oscillates on its springs at 36 kHz; a mean value",
-        ),
+        .absolute(0.03, "the released race oscillates on its springs at 36 kHz; a mean value"),
     );
     // Half of the shaft's load, carried by normal loads that sum up to 4/π of it.
     let slips_at = 0.1 * 1500.0 * 2.0 / (TAU / 4.0);
     context.check(
-        Check::new("slides", "friction heat over displacement of a race that slides in a smoother bore", "N", smoother.heat / smoother.farthest)
-            .closed_form(slips_at, "μ Σ N of a pressure proportional to the cosine")
-            .relative(0.05, "compliance of the bore changes its pressure, and the loads oscillate with the shaft")
-            .under("friction_springs"),
+        Check::new(
+            "slides",
+            "friction heat over displacement of a race that slides in a smoother bore",
+            "N",
+            smoother.heat / smoother.farthest,
+        )
+        .closed_form(slips_at, "μ Σ N of a pressure proportional to the cosine")
+        .relative(
+            0.05,
+            "compliance of the bore changes its pressure, and the loads oscillate with the shaft",
+        )
+        .under("friction_springs"),
     );
     context.check(
         Check::new(

@@ -124,8 +124,7 @@ const ORIGIN: &str = "one Fourier component, polynomials of degree 5";
 const ORIGIN_FINE: &str = "one Fourier component, polynomials of degree 6";
 
 fn relaxed(context: &mut CaseContext, ours: f64, fine: f64) {
-    let reason =
-        "mesh error 0.35 %; halved on the next finer mesh of the table";
+    let reason = "mesh error 0.35 %; halved on the next finer mesh of the table";
     context.check(
         Check::new("static_oracle", "relaxed radial stiffness", "N/m", ours)
             .independent(fine, ORIGIN_FINE)
@@ -182,10 +181,7 @@ fn checks(
             context.check(
                 Check::new(&own, &text, unit, ours)
                     .independent(exact, ORIGIN)
-                    .relative(
-                        tolerance,
-                        "mesh error: up to 0.36 % of K_d, 0.41 % of η_d",
-                    )
+                    .relative(tolerance, "mesh error: up to 0.36 % of K_d, 0.41 % of η_d")
                     .golden(GoldenTolerance::MIXED),
             );
             own
@@ -273,7 +269,7 @@ fn locked(context: &mut CaseContext, exact: &[Hysteresis; 2]) -> Result<(), Case
     }
     context.table(
         "four_nodes",
-        "Four-node elements of 5 to 8 mm beside the converged solution",
+        "Four-node elements of 5 to 8 mm and the converged solution",
         &["Hz", "K_d, N/m", "converged", "η_d", "converged"],
         rows,
     );

@@ -364,7 +364,7 @@ fn impacts(context: &mut CaseContext) -> Result<(), CaseError> {
             context.check(
                 Check::new(
                     &format!("{what}_{id}"),
-                    &format!("blow of the cage on its {what} at 1 m/s, {quantity}"),
+                    &format!("impact of the cage on its {what} at 1 m/s, {quantity}"),
                     unit,
                     ours,
                 )

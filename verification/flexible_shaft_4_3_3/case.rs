@@ -300,7 +300,13 @@ fn against_the_oracle(context: &mut CaseContext) -> Result<(), CaseError> {
 fn what_is_left_out(context: &mut CaseContext) -> Result<(), CaseError> {
     for (id, what, setup, tolerance, reason) in [
         ("mid_0", "mid-span load", MID_SPAN, 2e-5, "squares of rotations of 4e-3"),
-        ("overhung", "overhung load", OVERHUNG, 2e-4, "squares of rotations of 1.4e-2 at the free end"),
+        (
+            "overhung",
+            "overhung load",
+            OVERHUNG,
+            2e-4,
+            "squares of rotations of 1.4e-2 at the free end",
+        ),
     ] {
         let (solution, races) = setup.oracle(true)?;
         let ours = -solution.bearings[0].forces[0].x;
@@ -342,10 +348,7 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
                     unit,
                     ours,
                 )
-                .independent(
-                    theirs,
-                    "a converged equilibrium by others, to the digits given",
-                )
+                .independent(theirs, "a converged equilibrium by others, to the digits given")
                 .relative(5e-3, "another beam's shear coefficient moves the moment by 0.4 %"),
             );
         }
@@ -371,11 +374,15 @@ fn table_4_2(context: &mut CaseContext) -> Result<(), CaseError> {
                 .relative(0.02, "one factor for four moments, bearing in housings in the source")
                 .golden(GoldenTolerance::REORDERED),
         );
-        let force = Check::new(&fx, &format!("axial force on the outer race, {what}"), "N", row.outer[0])
-            .published(&fx)
-            .under("mesh_stiffness_4_2")
-            .relative(0.03, "housing compliance reduces this force according to the text; 7 % in Table 4.3")
-            .golden(GoldenTolerance::REORDERED);
+        let force =
+            Check::new(&fx, &format!("axial force on the outer race, {what}"), "N", row.outer[0])
+                .published(&fx)
+                .under("mesh_stiffness_4_2")
+                .relative(
+                    0.03,
+                    "housing compliance reduces this force according to the text; 7 % in Table 4.3",
+                )
+                .golden(GoldenTolerance::REORDERED);
         context.check(match label {
             "15" => force.explained(Explanation::new(
                 "The published force stays nearly the same from −10 to −15 µm, while it falls by 12 to 14 N with each 5 µm before and the moment goes on \

@@ -266,7 +266,7 @@ fn fit_error(context: &mut CaseContext) -> Result<(), CaseError> {
         format!(
             "Table 4.1's inner contact has a radius ratio of {:.0} and its outer contact {:.1}; the fitted \
              stiffness is off by {} % and {} % there. The source's numbers follow from the fit, so `hamrock-brewe` is the \
-             default and `exact` stands beside it.",
+             default and `exact` is the alternative.",
             marks[0],
             marks[1],
             significant(at(marks[0])?[1], 2),

@@ -263,12 +263,7 @@ fn compare(context: &mut CaseContext, variant: &Variant) -> Result<Vec<String>, 
             apart(&inner(&ours.inner), &inner(&first.inner)),
             5e-11,
         ),
-        (
-            "loads",
-            "loads on the inner race",
-            apart(&held(&ours.loads), &held(&first.loads)),
-            2e-10,
-        ),
+        ("loads", "loads on the inner race", apart(&held(&ours.loads), &held(&first.loads)), 2e-10),
         ("forces", "forces on the bore's nodes", apart(&flat(&ours.forces), &flat(&turned)), 1e-9),
         (
             "sum",

@@ -345,8 +345,7 @@ fn statements(context: &mut CaseContext, turns: &[(char, Turn)], fixed: &[[f64; 
     let size = |turn: &Turn| mean(&radii(&turn.outer));
     let ellipse = "B: the orbit is an ellipse";
     let arcs = "A: contact forces are distributed alike in all directions of the load";
-    let sideways =
-        "C: the annulus inclines under lateral loads, but not under loads downwards";
+    let sideways = "C: the annulus inclines under lateral loads, but not under loads downwards";
     let most = |id: &str, what: &str, ours: f64, limit: f64, sentence: &str, why: &str| {
         Check::new(id, what, "1", ours).stated(limit, section, sentence).at_most(0.0, why)
     };

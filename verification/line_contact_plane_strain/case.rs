@@ -296,8 +296,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     }
     context.table(
         "ways",
-        "Differences from Hertz under the load found, in percent (of p₀ for pressures): force on the nodes' shares farther than a cell from \
-         the edge, all of them by root mean square, pressure at the nodes more than one cell from the edge, and anywhere; \
+        "Differences from Hertz under the load found, in percent (of p₀ for pressures): force on the nodes' shares more than one cell from the edge, all of them by root mean square, pressure at the nodes more than one cell from the edge, and anywhere; \
          depth of the von Mises crest in half widths; penetration in nm",
         &[
             "way", "mesh", "size", "indentation", "effort", "load, N/mm", "p₀", "half width", "shares",
@@ -337,7 +336,10 @@ fn edge(context: &mut CaseContext, all: &[(&str, Errors)]) {
 fn settled(context: &mut CaseContext, answer: &Answer, rest: &Answer) {
     context.check(
         Check::new("settled", "load after settling, explicit steps", "N/m", answer.line.load)
-            .consistency(rest.line.load, "explicit steps, settled, against our own equilibrium of the same mesh")
+            .consistency(
+                rest.line.load,
+                "explicit steps, settled, against our own equilibrium of the same mesh",
+            )
             .relative(
                 1e-5,
                 "rest of the slowest mode; equilibrium and motion share the law but not the method",
@@ -386,9 +388,10 @@ fn figure(context: &mut CaseContext, mut curves: Vec<Curve>) -> Result<(), CaseE
 
 fn checks(context: &mut CaseContext, key: &str, found: &[Errors]) {
     let origin = "Hertz, rigid cylinder on a half space in plane strain, under the load found";
-    let mesh = "errors of mesh, contact compliance and block size; a wrong area or radius differs by more";
+    let mesh =
+        "errors of mesh, contact compliance and block size; a wrong area or radius differs by more";
     let many = if found.len() > 1 {
-        format!("farthest of {} indentations", found.len())
+        format!("worst of {} indentations", found.len())
     } else {
         "one indentation".into()
     };

@@ -48,7 +48,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         "ball_radius_of_5_um_interference",
         "3.4.3 creates a 5 µm interference; Table 3.5 prints a ball of 5.955 mm, which makes 4 µm. The radial \
          clearance is −5 µm, through the ball radius as 4.3.1 has it. Both are inputs of the source and exclude each \
-         other; 3.4.5 repeats neither. The published moment decides between them: 5.955 mm misses it by 16 %. So the moment is a \
+         other; 3.4.5 repeats neither. The published moment decides between them between them: 5.955 mm misses it by 16 %. So the moment is a \
          fit; the tilts of Table 3.7, which decided nothing, are compared with this choice.",
         "ball radius 5.9555 mm, stated as 5 µm",
     );
@@ -193,7 +193,7 @@ fn exact_beside_fit(context: &mut CaseContext) -> Result<(), CaseError> {
         "at 5 N·m, °",
         "at 10 N·m, °",
     ];
-    context.table("hertz_models", "Exact Hertz contact beside the fit", &columns, rows);
+    context.table("hertz_models", "Exact Hertz contact and the fit", &columns, rows);
     context.golden(
         "moment at 0.15° with exact Hertz contact",
         moment_at(Hertz::Exact, PHASE, 0.15)?,

@@ -97,7 +97,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     struck.inner.drives[2] =
         Drive::Load(Profile::HalfSine { base: 0.0, peak: BLOW, start: 0.1e-3, duration: 0.4e-3 });
     let blow = compare(&mut whole, &struck, &reductions, 1.0e-3)?;
-    judge(context, "blow", "a blow of 500 N over 0.4 ms", &blow, 0.01);
+    judge(context, "blow", "impact of 500 N over 0.4 ms", &blow, 0.01);
     context.check(
         Check::new(
             "blow_runge_kutta",
@@ -119,7 +119,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     turned.rotating_load =
         Some(RotatingLoad { force: Profile::Constant(TURNING), speed: rise, phase: 0.0 });
     let turn = compare(&mut whole, &turned, &reductions, 1.5e-3)?;
-    judge(context, "turn", "250 N turning at 0.3 of the lowest frequency across", &turn, 0.01);
+    judge(context, "turn", "250 N rotating at 0.3 of the lowest lateral frequency", &turn, 0.01);
     inertia(context, &whole, &turned, &turn)?;
 
     table(context, &[("blow", &blow), ("turning load", &turn)], &reductions);
@@ -400,7 +400,7 @@ fn judge(context: &mut CaseContext, id: &str, what: &str, found: &Compared, most
     context.check(
         Check::new(
             &format!("{id}_default"),
-            &format!("{what}: farthest of the outer race from the explicit run, of its swing"),
+            &format!("{what}: largest distance of the outer race from the explicit run, over its peak-to-peak motion"),
             "1",
             found.errors[DEFAULT],
         )
@@ -482,7 +482,7 @@ fn table(context: &mut CaseContext, all: &[(&str, &Compared)], reductions: &[Red
     }
     context.table(
         "cost",
-        "Explicit steps and shapes up to a frequency: natural shapes and patterns, steps, processor time of the run (s), farthest from the explicit run of the swing, times faster",
+        "Explicit steps and component modes up to a frequency: number of modes and static correction modes, steps, processor time (s), largest distance from the explicit run over its peak-to-peak motion, speed-up",
         &["motion", "housing", "shapes", "steps", "s", "error", "faster"],
         rows,
     );
@@ -508,7 +508,7 @@ fn figure(context: &mut CaseContext, blow: &Compared) -> Result<(), CaseError> {
     context.figure(
         "blow",
         xy(&plot)?,
-        "Height of the outer race over time: explicit steps of all elements, and shapes.",
+        "Height of the outer race over time: explicit steps of all elements, and modes.",
     );
     Ok(())
 }

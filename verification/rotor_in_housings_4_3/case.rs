@@ -400,7 +400,7 @@ fn seats(context: &mut CaseContext) -> Result<(), CaseError> {
     context.finding(
         "sideways",
         format!(
-            "As balls pass, race 1 swings sideways by {:.0}, {:.0} and {:.0} nm through equilibria with −5, 0 and +5 µm: the soft seat alone adds {:.1} %. The text's \
+            "As balls pass, race 1 moves sideways by {:.0}, {:.0} and {:.0} nm through equilibria with −5, 0 and +5 µm: the soft seat alone adds {:.1} %. The text's \
              instability along Y would be one of the motion.",
             all[0][3],
             all[1][3],

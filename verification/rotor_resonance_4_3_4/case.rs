@@ -188,10 +188,7 @@ fn ways(context: &mut CaseContext, in_blocks: &Done, on_fixed: &Done) -> Result<
     context.check(
         Check::new("same_minus_z", "the same along −Z", "1", gain(2))
             .stated(0.0, "4.3.4", "the displacement is nearly the same along −Z")
-            .absolute(
-                0.03,
-                "step error of single rows, 2 %, and the compliance of the foot",
-            ),
+            .absolute(0.03, "step error of single rows, 2 %, and the compliance of the foot"),
     );
     for (id, axis, of) in
         [("race_z", "z", [&in_blocks.z, &on_fixed.z]), ("race_y", "y", [&in_blocks.y, &on_fixed.y])]

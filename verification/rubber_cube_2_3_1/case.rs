@@ -113,7 +113,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     }
     context.table(
         "loops",
-        "Pressed and let go at a constant true strain rate, C_R = 0.324 MPa; stresses and areas in MPa",
+        "Compressed and released at a constant true strain rate, C_R = 0.324 MPa; stresses and areas in MPa",
         &["rate, 1/s", "strain", "stress", "oracle", "loop", "oracle"],
         rows,
     );

@@ -174,10 +174,7 @@ fn checks(context: &mut CaseContext, all: &[[f64; 4]]) {
             own / exact,
         )
         .converged(1.0, "an element that does not lock")
-        .at_least(
-            100.0,
-            "volumetric locking: stiffness grows with B",
-        ),
+        .at_least(100.0, "volumetric locking: stiffness grows with B"),
     );
     context.check(
         Check::new(

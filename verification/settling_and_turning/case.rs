@@ -319,9 +319,8 @@ fn turning(context: &mut CaseContext) -> Result<(), CaseError> {
     context.finding(
         "turning_moment",
         format!(
-            "Turning changes the moment by {:+.2} % beside the resting bearing with evenly spaced balls; statics at the \
-             turning bearing's ball angles has {:+.2} %. So it is where the balls are (they run unevenly under the \
-             tilt, by up to {:.1e} rad), hardly their inertia or traction.",
+            "Turning changes the moment by {:+.2} %against the bearing at rest with evenly spaced balls; statics at the \
+             turning bearing's ball angles has {:+.2} %. The cause is the ball positions (uneven under the tilt, by up to {:.1e} rad), not their inertia or traction.",
             100.0 * (ours / still.loads[3] - 1.0),
             100.0 * (theirs / still.loads[3] - 1.0),
             tilted.uneven
@@ -350,7 +349,7 @@ fn turning(context: &mut CaseContext) -> Result<(), CaseError> {
     context.figure(
         "ball_load_over_azimuth",
         svg,
-        "As Fig. 3.31, fixed outer race: a ball's load as it goes round, from the turning bearing.",
+        "As Fig. 3.31, fixed outer race: load of a ball over one orbit, rotating bearing.",
     );
     Ok(())
 }

@@ -202,7 +202,7 @@ fn blow(context: &mut CaseContext) -> Result<(), CaseError> {
     });
     context.table(
         "cost",
-        "A blow of 12 ms: wall time, and the largest distance from explicit steps over the swing",
+        "A pulse of 12 ms: wall time, and the largest distance from explicit steps over the peak-to-peak motion",
         &["way", "s", PLACES[0], PLACES[1], PLACES[2]],
         rows.to_vec(),
     );

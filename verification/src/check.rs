@@ -1,11 +1,11 @@
-//! A check as a case states it: our number, what it is held against, how closely and why.
+//! A check as a case states it: our number, its reference, the tolerance and its reason.
 
 use serde::{Deserialize, Serialize};
 
 use crate::golden::GoldenTolerance;
 use crate::number;
 
-/// What our number is held against.
+/// Reference of our number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reference {
     /// An entry of the case's `published.toml`, by id; its value is looked up after the run.
@@ -24,15 +24,15 @@ pub enum Reference {
 pub enum ReferenceKind {
     /// Printed in the source.
     Published,
-    /// Printed in the source, where a limit on one side is no agreement with it but shows why it is missed.
+    /// Printed in the source; a one-sided limit shows why our number differs.
     Evidence,
-    /// A formula evaluated apart from the law it judges.
+    /// A formula evaluated separately from the law it judges.
     ClosedForm,
     /// The limit of a refinement, or a solution fine enough to count as one.
     Converged,
-    /// Another method or another code, which shares nothing of ours but the question.
+    /// Another method or program that shares no code with ours.
     Independent,
-    /// Another of our own ways to the same number: both may be wrong together.
+    /// Another method of this program: both may be wrong.
     Consistency,
     /// A threshold or an order taken from a sentence of the source, which prints no number for it.
     Stated,

@@ -1,5 +1,5 @@
-//! The index of the source: `source_index.toml`, one line for each of its tables, figures and numbers
-//! in the text, and what a run says of each.
+//! Index of the source: `source_index.toml`, one line for each table, figure and number in the text, and
+//! its status in a run.
 //!
 //! The file holds no status. A line that lists published values takes it from the checks that settle
 //! them; of a number that several cases hold (twins), each counted once, the least favourable counts.
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::judge::Status;
 use crate::report::{CaseReport, CaseStatus};
 
-/// What a line of the source is.
+/// Kind of a line of the source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
@@ -40,10 +40,10 @@ pub struct Line {
     /// How many numbers of results the line prints.
     #[serde(default)]
     pub prints: usize,
-    /// Published values held against it, as `case/id`.
+    /// Published values compared with it, as `case/id`.
     #[serde(default)]
     pub values: Vec<String>,
-    /// Cases that carry it without a printed number, or take the input.
+    /// Cases that compute it without a printed number, or use the input.
     #[serde(default)]
     cases: Vec<String>,
 }
@@ -66,7 +66,7 @@ pub struct Index {
     pub chapters: Vec<Chapter>,
 }
 
-/// How many printed numbers came out how, each counted once.
+/// Counts of printed numbers by status, each number once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Numbers {
     pub reproduced: usize,
@@ -118,7 +118,7 @@ impl Numbers {
     }
 }
 
-/// What a run says of a line.
+/// Status of a line in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Entry {
     pub section: String,
@@ -128,13 +128,13 @@ pub struct Entry {
     /// In words: of numbers, how many came out how.
     pub status: String,
     pub numbers: Numbers,
-    /// Those that carry it.
+    /// Cases of the line.
     pub cases: Vec<String>,
-    /// Published values held against it, as `case/id`.
+    /// Published values compared with it, as `case/id`.
     pub values: Vec<String>,
 }
 
-/// A chapter's lines as a run leaves them.
+/// Lines of a chapter with their status in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChapterEntries {
     pub number: u32,
@@ -164,7 +164,7 @@ impl Index {
         parts.filter(|part| part.1 == id && part.0 != case).map(|part| part.0).collect()
     }
 
-    /// What the cases of a run say of each line.
+    /// Status of each line from the cases of a run.
     pub fn judged(&self, cases: &[CaseReport]) -> Vec<ChapterEntries> {
         let chapter = |chapter: &Chapter| {
             let lines: Vec<Entry> = chapter.lines.iter().map(|line| line.judged(cases)).collect();
@@ -177,7 +177,7 @@ impl Index {
 }
 
 impl Line {
-    /// The cases that carry it, in the order in which they are named.
+    /// Cases of the line, in the order of the index.
     pub fn carriers(&self) -> Vec<&str> {
         let mut cases: Vec<&str> = Vec::new();
         let claimed = self.values.iter().filter_map(|name| split(name)).map(|part| part.0);

@@ -229,10 +229,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             1.0,
             "Newton's law for inner race and balls; ∫ of half a sine wave is 2/π of its box",
         )
-        .absolute(
-            4e-5,
-            "error of the trapezoidal rule over samples every 20 coupling steps, 4e-6",
-        ),
+        .absolute(4e-5, "error of the trapezoidal rule over samples every 20 coupling steps, 4e-6"),
     );
     context.check(
         Check::new(
@@ -290,8 +287,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.finding(
         "who_damps",
         format!(
-            "At the end, ten durations of the impact after its start, {:.0} % of the swing is left in steel, which hardly moves and so hardly damps, and {:.0} % in \
-             a bushing that gives way and damps.",
+            "At the end, ten durations of the impact after its start, {:.0} % of the amplitude is left in steel, which deforms and damps little, and {:.0} % in a compliant, damping bushing.",
             100.0 * kept(&steel),
             100.0 * kept(&strong)
         ),
@@ -339,7 +335,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     context.figure(
         "force",
         svg,
-        "As Fig. 2.26 for steel: after the impact the force goes on oscillating. The lumped model is undamped.",
+        "As Fig. 2.26 for steel: after the impact the force keeps oscillating. The lumped model is undamped.",
     );
     Ok(())
 }

@@ -222,9 +222,17 @@ fn rows(context: &mut CaseContext) -> Result<(), CaseError> {
         swing = [swing[0].min(expected), swing[1].max(expected)];
     }
     context.check(
-        Check::new("rows", "largest error of 21 rows over the change of the signal in 12 ms", "1", worst / (swing[1] - swing[0]))
-            .independent(0.0, "Neumann's double sum where the columns say that the cage is")
-            .absolute(1e-3, "the outer race tilts by about 1e-6, which the columns of the cage do not hold"),
+        Check::new(
+            "rows",
+            "largest error of 21 rows over the change of the signal in 12 ms",
+            "1",
+            worst / (swing[1] - swing[0]),
+        )
+        .independent(0.0, "Neumann's double sum where the columns say that the cage is")
+        .absolute(
+            1e-3,
+            "the outer race tilts by about 1e-6, which the columns of the cage do not hold",
+        ),
     );
     let [felt, speed, time] = ["top_acceleration", "outer_velocity_z", "time"].map(column);
     let (felt, speed, time) = (felt?, speed?, time?);

@@ -274,9 +274,14 @@ fn amplitudes(context: &mut CaseContext, pitches: &[Pitch]) {
     context.table("amplitudes", "Varying compliance at 1000 rpm and 1500 N", &columns, rows);
     let largest = pitches.iter().map(|pitch| pitch.uneven).fold(0.0, f64::max);
     context.check(
-        Check::new("spacing", "largest deviation of a ball from even spacing", "mm", 26.0 * largest)
-            .closed_form(0.247, "pocket radius 6.200 less ball radius 5.953 mm, Table 4.1")
-            .at_most(0.206, "a sixth of the pocket clearance: a cage would touch nothing"),
+        Check::new(
+            "spacing",
+            "largest deviation of a ball from even spacing",
+            "mm",
+            26.0 * largest,
+        )
+        .closed_form(0.247, "pocket radius 6.200 less ball radius 5.953 mm, Table 4.1")
+        .at_most(0.206, "a sixth of the pocket clearance: a cage would touch nothing"),
     );
     context.check(
         Check::new(
@@ -322,9 +327,8 @@ fn without_traction(context: &mut CaseContext) -> Result<(), CaseError> {
         "traction_needed",
         format!(
             "Without traction a ball cannot pass the load zone at 1000 rpm: squeezed between the races under the load it \
-             stores {:.1} mJ (independent statics, (2/5) W δ of both contacts), but it goes round with {:.1} mJ only. The \
-             run without traction throws balls back: after two pitches they are {uneven:.2} rad off. So varying \
-             compliance needs traction, and frictionless dynamics of a radially loaded bearing is no bearing.",
+             stores {:.1} mJ (independent statics, (2/5) W δ of both contacts), but it goes round with {:.1} mJ only. Without traction balls are thrown back: after two pitches they deviate by {uneven:.2} rad off. So varying \
+             compliance needs traction, and a radially loaded bearing cannot turn without friction.",
             1e3 * strain,
             1e3 * kinetic
         ),
@@ -395,10 +399,9 @@ fn dynamic_effects(context: &mut CaseContext) -> Result<(), CaseError> {
     context.finding(
         "where_dynamics_differs",
         "Up to the source's 1000 rpm the isolated bearing is quasi-static: ball passing lies at 51 Hz, the race of 0.08 kg \
-         swings on its contacts at 3 to 5 kHz, and only the kinks of its path (a ball enters or leaves) ring. With speed \
-         (10 % at 10 000 rpm, ball passing at 514 Hz) or mass (a rotor's half, 1.11 kg, swings below 1.5 kHz: multiples of \
-         ball passing meet the resonance) dynamics departs from statics; the table shows by how much, beside a lumped mass \
-         on the contacts' stiffness.",
+         oscillates on its contacts at 3 to 5 kHz, and only the kinks of its path (a ball enters or leaves) excite vibration. With speed \
+         (10 % at 10 000 rpm, ball passing at 514 Hz) or mass (a rotor's half, 1.11 kg, oscillates below 1.5 kHz: multiples of \
+         ball passing meet the resonance) dynamics departs from statics; the table shows by how much, and the same for a lumped mass on the contact stiffness.",
     );
     let columns = [
         "inner race",

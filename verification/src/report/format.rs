@@ -111,19 +111,19 @@ pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
 pub fn meaning(kind: ReferenceKind) -> &'static str {
     match kind {
         ReferenceKind::Published => "a number that the source prints",
-        ReferenceKind::Evidence => "why a printed number is missed",
-        ReferenceKind::ClosedForm => "a formula evaluated apart",
+        ReferenceKind::Evidence => "why a printed number differs",
+        ReferenceKind::ClosedForm => "a formula evaluated separately",
         ReferenceKind::Converged => "the limit of a refinement",
-        ReferenceKind::Independent => "another method or code",
-        ReferenceKind::Consistency => "another of our own ways",
-        ReferenceKind::Stated => "a sentence of the source, without a number",
+        ReferenceKind::Independent => "another method or program",
+        ReferenceKind::Consistency => "another method of this program",
+        ReferenceKind::Stated => "a sentence of the source",
     }
 }
 
 /// The verdict, and how much of the source it speaks of.
 pub fn badge(report: &Report, numbers: &Numbers) -> String {
     let verdict = match (report.passed(), report.complete()) {
-        (true, _) => "passed: what is built",
+        (true, _) => "passed",
         (false, true) => "failed",
         (false, false) => "incomplete",
     };
@@ -149,7 +149,7 @@ pub fn published(report: &Report) -> impl Iterator<Item = (&CaseReport, &CheckRe
 
 /// Checks that name an assumption; one that none names shapes the whole case.
 pub fn leaning(checks: usize) -> String {
-    if checks == 0 { "all, unnamed".to_string() } else { checks.to_string() }
+    if checks == 0 { "all".to_string() } else { checks.to_string() }
 }
 
 /// What holds and what does not, in sentences.
@@ -182,7 +182,7 @@ pub fn lead(report: &Report, totals: &Totals) -> Vec<String> {
             in_words(&totals.published_numbers.parts())
         ),
         format!(
-            "{}: {}. One-sided (a limit above or below only): {}.",
+            "{}: {}. One-sided: {}.",
             counted(totals.checks, "check"),
             in_words(&statuses),
             totals.one_sided
@@ -191,7 +191,7 @@ pub fn lead(report: &Report, totals: &Totals) -> Vec<String> {
     let left_out = totals::left_out(report).len();
     if left_out > 0 {
         sentences.push(format!(
-            "{} of this repository, named below, {} no part of this run.",
+            "{} of this repository, listed below, {} not part of this run.",
             counted(left_out, "case"),
             if left_out == 1 { "is" } else { "are" }
         ));

@@ -27,7 +27,7 @@ pub fn write_totals(out: &mut String, report: &Report, source: &[ChapterEntries]
     }
     writeln!(
         out,
-        "<tr class=\"sum\"><td>in all, each counted once<small>{} of a number that two cases hold</small></td>\
+        "<tr class=\"sum\"><td>in all, each counted once<small>{} of numbers that two cases hold</small></td>\
          <td class=\"number\">{}</td></tr></tbody></table>",
         format::counted(totals.twins, "check"),
         totals.published_numbers.printed()
@@ -54,7 +54,7 @@ pub fn write_totals(out: &mut String, report: &Report, source: &[ChapterEntries]
 
     writeln!(
         out,
-        "<table><thead><tr><th>Checks by what they are held against</th>\
+        "<table><thead><tr><th>Checks by kind of reference</th>\
          <th class=\"number\">Count</th><th class=\"number\">One-sided</th>\
          <th class=\"number\">Failed</th></tr></thead><tbody>"
     )?;
@@ -107,7 +107,7 @@ pub fn write_source(out: &mut String, source: &[ChapterEntries]) -> Result {
     writeln!(
         out,
         "<section class=\"source\"><h2>Index of the source</h2><p>Every table, every figure and every \
-         number in the text, in the source's order, and which case carries it. Its words are from this run.</p>"
+         number in the text, in the source's order, with its status in this run and its cases.</p>"
     )?;
     for chapter in source {
         let counts: Vec<String> = (chapter.numbers.parts().iter())
@@ -170,15 +170,15 @@ pub fn write_published(out: &mut String, report: &Report) -> Result {
     }
     writeln!(
         out,
-        "<p>Explained and fitted ones are not reproduced. What is allowed says how much a reproduction is worth: \
-         where the source's own measurements scatter by some per cent, it is agreement within that scatter.</p>\
+        "<p>Explained and fitted numbers are not reproduced. Where measurements of the source scatter by some per cent, \
+         the tolerance is that scatter.</p>\
          <table class=\"explained\"><thead><tr><th>Quantity</th><th>Status</th>\
          <th class=\"number\">Published</th><th class=\"number\">Ours</th>\
          <th class=\"number\">Difference</th><th class=\"number\">Allowed</th><th>Why</th></tr></thead><tbody>"
     )?;
     for (case, check) in listed {
         let why = match (&check.fit, &check.explanation) {
-            (Some(what), _) => format!("Met because fitted: {}", prose(what)),
+            (Some(what), _) => format!("Fitted: {}", prose(what)),
             (None, Some(_)) => explanation(case, check),
             (None, None) => prose(&check.tolerance_reason),
         };
@@ -210,11 +210,9 @@ pub fn write_left_out(out: &mut String, report: &Report) -> Result {
     }
     writeln!(
         out,
-        "<section><h2>Cases not run</h2><p>{} of this repository {} no part of this run, and this report says \
-         nothing about {}. <code>make verify-full</code> runs all.</p><ul class=\"left-out\">",
+        "<section><h2>Cases not run</h2><p>{} of this repository {} not part of this run. <code>make verify-full</code> runs all cases.</p><ul class=\"left-out\">",
         format::counted(left_out.len(), "case"),
         if left_out.len() == 1 { "is" } else { "are" },
-        if left_out.len() == 1 { "it" } else { "them" },
     )?;
     for case in left_out {
         writeln!(
@@ -240,9 +238,9 @@ pub fn write_assumptions(out: &mut String, report: &Report) -> Result {
     }
     writeln!(
         out,
-        "<section id=\"assumptions\"><h2>Assumptions</h2><p>What the source leaves out, and the value taken. \
-         Checks that lean on one say so; one that no check names shapes all numbers of its cases.</p><table class=\"assumed\"><thead><tr><th>Assumption</th><th>Value</th>\
-         <th>What it fills</th><th class=\"number\">Checks that lean on it</th><th>Cases</th></tr></thead><tbody>"
+        "<section id=\"assumptions\"><h2>Assumptions</h2><p>Inputs that the source omits, and the values used. \
+         An assumption that no check names affects all numbers of its cases.</p><table class=\"assumed\"><thead><tr><th>Assumption</th><th>Value</th>\
+         <th>Omitted input</th><th class=\"number\">Checks that depend on it</th><th>Cases</th></tr></thead><tbody>"
     )?;
     for entry in shared {
         let cases: Vec<String> = (entry.cases.iter())
@@ -250,7 +248,7 @@ pub fn write_assumptions(out: &mut String, report: &Report) -> Result {
             .collect();
         writeln!(
             out,
-            "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td class=\"number\" data-name=\"checks that lean on it:\">{}</td><td>{}</td></tr>",
+            "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td class=\"number\" data-name=\"checks that depend on it:\">{}</td><td>{}</td></tr>",
             escape(&entry.assumption.name),
             escape(&entry.assumption.default),
             prose(&entry.assumption.text),

@@ -171,7 +171,7 @@ fn write_case(out: &mut String, report: &Report, case: &CaseReport) -> std::fmt:
         });
         writeln!(
             out,
-            "<p class=\"meta\">Own past: {} pinned{accepted}.</p>",
+            "<p class=\"meta\">Golden values: {}{accepted}.</p>",
             format::counted(case.golden.values, "number")
         )?;
     }
@@ -227,7 +227,7 @@ fn write_checks(out: &mut String, report: &Report, case: &CaseReport) -> std::fm
     writeln!(
         out,
         "<h3 class=\"label\">Checks</h3><table class=\"checks\"><thead><tr><th>Quantity</th>\
-         <th class=\"number\">Ours</th><th class=\"number\">Reference</th><th>Held against</th>\
+         <th class=\"number\">Ours</th><th class=\"number\">Reference</th><th>Kind of reference</th>\
          <th class=\"number\">Error</th><th>Tolerance and its reason</th><th>Status</th></tr>\
          </thead><tbody>"
     )?;
@@ -239,7 +239,7 @@ fn write_checks(out: &mut String, report: &Report, case: &CaseReport) -> std::fm
         if let Some(id) = &check.published_id {
             let twins = report.index.twins(&case.id, id);
             if !twins.is_empty() {
-                write!(note, "<small>also held by {}</small>", escape(&twins.join(", ")))?;
+                write!(note, "<small>also in {}</small>", escape(&twins.join(", ")))?;
             }
         }
         if let Some(what) = &check.fit {
@@ -286,7 +286,7 @@ pub(super) fn explanation(case: &CaseReport, check: &CheckReport) -> String {
         .map(|id| format!("<a href=\"#{}\">{}</a>", anchor(case, id), escape(id)))
         .collect();
     format!(
-        "{} Known difference {} ± {}. Shown by {}.",
+        "{} Known difference {} ± {}, shown by {}.",
         prose(&explanation.text),
         nowrap(&format::gap(check, explanation.gap)),
         nowrap(&format::gap(check, explanation.gap_tolerance)),
