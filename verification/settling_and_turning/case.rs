@@ -319,7 +319,7 @@ fn turning(context: &mut CaseContext) -> Result<(), CaseError> {
     context.finding(
         "turning_moment",
         format!(
-            "Turning changes the moment by {:+.2} %against the bearing at rest with evenly spaced balls; statics at the \
+            "Turning changes the moment by {:+.2} % against the bearing at rest with evenly spaced balls; statics at the \
              turning bearing's ball angles has {:+.2} %. The cause is the ball positions (uneven under the tilt, by up to {:.1e} rad), not their inertia or traction.",
             100.0 * (ours / still.loads[3] - 1.0),
             100.0 * (theirs / still.loads[3] - 1.0),
