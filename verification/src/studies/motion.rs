@@ -23,7 +23,7 @@ impl Method {
 }
 
 /// Result of one run.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct History {
     /// Displacement of the inner race from the outer race, m, one entry a row.
     pub race: Vec<[f64; 3]>,
