@@ -246,9 +246,9 @@ fn what_several_housings_cannot_do_is_refused_before_anything_is_solved() {
         assert!(said.contains("body.shaft") && said.contains(part), "{said}");
     }
     let bends = read(Path::new(&scene("rotor_in_pillow_blocks.toml")));
-    let watch = "watch = [{ name = \"mid\"";
+    let probe = "probe = [{ name = \"mid\"";
     let unbalance = "unbalance = [{ at = \"0 mm\", size = \"1e-5 kg m\" }]\n";
-    let bends = changed(&bends, watch, &format!("{unbalance}{watch}"));
+    let bends = changed(&bends, probe, &format!("{unbalance}{probe}"));
     let bends = changed(&bends, "method = \"reduced\"", "method = \"quasi-static\"");
     let said = refused(&["check", &write(folder.path(), "bends.toml", &bends)]);
     assert!(said.contains("body.shaft.beam.unbalance.1.size: refused: an unbalance is"), "{said}");

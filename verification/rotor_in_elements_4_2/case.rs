@@ -103,7 +103,7 @@ fn both(changes: &[Change]) -> Result<[Way; 2], CaseError> {
 
 /// Springs of which a reduced shaft has none.
 const STIFF: &str = ", race_stiffness = \"4e10 N/m\"";
-const WEIGHTS: &str = "watch =";
+const WEIGHTS: &str = "probe =";
 
 /// Unbalances along a shaft of such a mesh that balance the masses of its cells.
 fn counterweights(mesh: &str) -> Result<String, CaseError> {

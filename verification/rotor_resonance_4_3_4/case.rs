@@ -112,7 +112,7 @@ fn housed(radial: f64) -> Result<Done, CaseError> {
         .enumerate()
         .map(|(i, at)| format!("{{ name = \"s{i}\", at = \"{at} mm\" }}"))
         .collect();
-    let watch = format!("watch = [{{ name = \"mid\", at = \"0 mm\" }}, {}]", watch.join(", "));
+    let watch = format!("probe = [{{ name = \"mid\", at = \"0 mm\" }}, {}]", watch.join(", "));
     let clearance = clearance(radial);
     let mut changes: Vec<Change> = vec![
         ("speed = \"1000 rpm\"", SPEED),
@@ -127,7 +127,7 @@ fn housed(radial: f64) -> Result<Done, CaseError> {
         ("end = \"2 ms\"", "end = \"0.2 s\"\naccuracy = 0.01"),
         ("output_interval = \"20 us\"", "output_interval = \"0.1 ms\""),
         ("plots = [\"series\", \"orbit\"]", "channels = [\"races\", \"forces\", \"moments\"]"),
-        ("watch = [{ name = \"mid\", at = \"0 mm\" }]", &watch),
+        ("probe = [{ name = \"mid\", at = \"0 mm\" }]", &watch),
         (NO_CLEARANCE, &clearance),
     ];
     changes.extend(CALM);
