@@ -103,3 +103,13 @@ fn pages_are_short() {
         assert!(lines <= most, "{}: {lines} lines, at most {most}", page.display());
     }
 }
+
+/// The README has the counts of published numbers by status that docs/verification.md has.
+#[test]
+fn counts_of_published_numbers_agree() {
+    let [page, readme] = ["docs/verification.md", "README.md"]
+        .map(|file| fs::read_to_string(root().join(file)).expect(file));
+    let counts = page.lines().find_map(|line| line.strip_prefix("The source prints "));
+    let counts = counts.expect("a line of counts in docs/verification.md");
+    assert!(readme.contains(counts), "README.md does not have: {counts}");
+}

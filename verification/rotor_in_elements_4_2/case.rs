@@ -115,7 +115,7 @@ fn counterweights(mesh: &str) -> Result<String, CaseError> {
         format!("{{ at = \"{at} mm\", size = \"{size:e} kg m\", angle = \"{angle} deg\" }}")
     };
     let weights = [-150, -50, 50, 150].map(weight).join(", ");
-    Ok(format!("unbalance = [{weights}]\nwatch ="))
+    Ok(format!("unbalance = [{weights}]\nprobe ="))
 }
 
 const SHARED: &str = "the same elements condensed onto sections: consistent masses, gyroscopic terms, no spring under the race";
