@@ -2,7 +2,7 @@
 
 mod asked;
 pub mod assembly;
-mod bushing_remarks;
+mod bushing_warnings;
 pub mod check;
 pub mod check_mesh;
 pub mod compare;

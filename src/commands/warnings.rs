@@ -1,6 +1,6 @@
 //! Warnings of commands on bearings: one set for equilibria and runs.
 
-use crate::commands::bushing_remarks;
+use crate::commands::bushing_warnings;
 use bearing_dynamics::assembly::lists::Bearing;
 use bearing_dynamics::assembly::loads::Rotation;
 use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
@@ -62,7 +62,7 @@ pub fn of_equilibrium(
     solution: &AssemblySolution,
 ) -> Result<Vec<Warning>, Box<dyn Error>> {
     refuse_bent(assembly, solution)?;
-    let mut warnings = bushing_remarks::of_equilibrium(scene, assembly, solution);
+    let mut warnings = bushing_warnings::of_equilibrium(scene, assembly, solution);
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         let text = format!(
             "the position is one of many, because {} directions meet no stiffness: load or preload the bearings, or prescribe these coordinates",
@@ -142,7 +142,7 @@ pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
         }
     }
     warnings.extend(between_rows(scene, session.clock.row_interval()));
-    warnings.extend(bushing_remarks::of_run(scene, session));
+    warnings.extend(bushing_warnings::of_run(scene, session));
     warnings
 }
 
