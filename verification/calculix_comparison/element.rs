@@ -1,18 +1,17 @@
 //! Stiffness and mass of single elements, entry by entry.
 
-use bearing_dynamics::mesh::Elements;
+use bearing_dynamics::mesh::{Elements, Order, TetMesh};
 use bearing_dynamics::numeric::sparse::SymmetricMatrix;
 use bearing_dynamics::solids::tangent::{MassMatrix, Unknowns, mass, pattern, stiffness};
 use nalgebra::DMatrix;
 
-use super::{
-    DENSITY_PER_MM3, Kind, MM, N_PER_MM, TONNE, files, kept, largest, model, not_understood, oracle,
-};
+use super::program::Output;
+use super::{DENSITY, Kind, largest, model, oracle};
 use crate::case::CaseError;
 use crate::check::Check;
 use crate::context::CaseContext;
 
-/// All entries of a sparse matrix, node by node; its own order is that of elimination.
+/// All entries of a sparse matrix in the order of the nodes instead of that of elimination.
 fn dense(matrix: &SymmetricMatrix, unknowns: &Unknowns) -> DMatrix<f64> {
     let size = matrix.size();
     let mut all = DMatrix::zeros(size, size);
@@ -29,29 +28,44 @@ fn dense(matrix: &SymmetricMatrix, unknowns: &Unknowns) -> DMatrix<f64> {
     all
 }
 
-/// Stiffness and mass of one element; the ten-node one is curved.
-pub fn matrices(context: &mut CaseContext, kind: &Kind) -> Result<(), CaseError> {
-    let Kind { tag, name, .. } = kind;
-    let deck = kept(&format!("{tag}_element.inp"), oracle::deck)?;
-    let [element] = deck.elements.as_slice() else { return Err(not_understood("one element")) };
-    let nodes = deck.nodes.iter().map(|place| place.map(|x| x * MM)).collect();
-    let indices: Vec<u32> = element.iter().map(|node| *node as u32).collect();
-    let unfit = |_| not_understood("an element of neither 4 nor 10 nodes");
-    let elements = match indices.len() {
-        4 => Elements::Linear(vec![indices.try_into().map_err(unfit)?]),
-        _ => Elements::Quadratic(vec![indices.try_into().map_err(unfit)?]),
+/// Nodes of a ten-node element with curved edges, mm; the first four are those of a four-node one.
+const NODES: [[f64; 3]; 10] = [
+    [0.0, 0.0, 0.0],
+    [7.0, 1.0, 0.5],
+    [1.5, 6.0, -0.5],
+    [1.0, 2.0, 8.0],
+    [3.6, 0.2, 0.4],
+    [4.5, 3.9, -0.1],
+    [0.5, 3.1, -0.3],
+    [0.3, 1.1, 4.2],
+    [4.1, 1.3, 4.4],
+    [1.4, 4.2, 3.6],
+];
+
+/// One element.
+pub fn mesh(kind: &Kind) -> Result<TetMesh, CaseError> {
+    let (count, elements) = match kind.order {
+        Order::Linear => (4, Elements::Linear(vec![[0, 1, 2, 3]])),
+        Order::Quadratic => (10, Elements::Quadratic(vec![[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]])),
     };
+    let nodes = NODES[..count].iter().map(|place| place.map(|x| 1e-3 * x)).collect();
+    Ok(TetMesh::new(nodes, elements)?)
+}
+
+/// Compares stiffness and mass of one element.
+pub fn matrices(context: &mut CaseContext, kind: &Kind, theirs: &Output) -> Result<(), CaseError> {
+    let Kind { tag, name, .. } = kind;
+    let TetMesh { nodes, elements, .. } = mesh(kind)?;
+    let element: Vec<usize> = (0..nodes.len()).collect();
+    let few = oracle::few_point_mass(&nodes, &element, DENSITY);
     let model = model(nodes, elements, Vec::new(), Vec::new())?;
     let unknowns = Unknowns::new(&model);
     let mut sparse = pattern(&model.problem, &unknowns);
     stiffness(&model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut sparse);
-    let our_stiffness = dense(&sparse, &unknowns) / N_PER_MM;
+    let our_stiffness = dense(&sparse, &unknowns);
     mass(&model, &unknowns, MassMatrix::Consistent, &mut sparse);
-    let our_mass = dense(&sparse, &unknowns) / TONNE;
-    let dof = files::text(&format!("kept/{tag}_element.dof"))?;
-    let of =
-        |end: &str| kept(&format!("kept/{tag}_element.{end}"), |text| oracle::matrix(text, dof));
-    let (their_stiffness, their_mass) = (of("sti")?, of("mas")?);
+    let our_mass = dense(&sparse, &unknowns);
+    let (their_stiffness, their_mass) = (theirs.stiffness(), theirs.mass());
     let apart = |ours: &DMatrix<f64>, theirs: &DMatrix<f64>| {
         largest((ours - theirs).iter().map(|x| x.abs())) / largest(theirs.iter().map(|x| x.abs()))
     };
@@ -66,8 +80,7 @@ pub fn matrices(context: &mut CaseContext, kind: &Kind) -> Result<(), CaseError>
         .independent(0.0, "CalculiX, MATRIXSTORAGE")
         .absolute(1e-13, digits),
     );
-    // The same masses along each axis, none between axes.
-    let few = oracle::few_point_mass(&deck.nodes, element, DENSITY_PER_MM3 / TONNE);
+    // The same along each axis, no coupling between axes.
     let few = few.kronecker(&DMatrix::identity(3, 3));
     context.check(
         Check::new(
@@ -81,7 +94,7 @@ pub fn matrices(context: &mut CaseContext, kind: &Kind) -> Result<(), CaseError>
         )
         .consistency(
             0.0,
-            "an oracle of this case against CalculiX: that is how CalculiX integrates masses",
+            "the oracle of this case against CalculiX: shows how CalculiX integrates masses",
         )
         .absolute(2e-13, digits),
     );
@@ -90,7 +103,7 @@ pub fn matrices(context: &mut CaseContext, kind: &Kind) -> Result<(), CaseError>
         Check::new(
             &format!("{tag}_element_total_mass"),
             &format!("{name}: mass of one element"),
-            "t",
+            "kg",
             total(&our_mass),
         )
         .independent(total(&their_mass), "CalculiX, MATRIXSTORAGE")
@@ -104,7 +117,7 @@ pub fn matrices(context: &mut CaseContext, kind: &Kind) -> Result<(), CaseError>
                 "1",
                 apart(&our_mass, &their_mass),
             )
-            .closed_form(0.6, "ρV/10 on the diagonal in place of ρV/16")
+            .closed_form(0.6, "ρV/10 on the diagonal instead of ρV/16")
             .absolute(1e-12, digits),
         );
     }

@@ -1,56 +1,9 @@
-//! What CalculiX was told and what it answered: its decks and outputs, read here; and the mass
-//! matrices of its quadrature. Lengths in mm, forces in N, masses in t, as in the files.
+//! Reader of CalculiX' output files, and mass matrices integrated with its few quadrature points.
 
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 use std::f64::consts::TAU;
 
-/// Mesh of a deck: nodes and elements numbered from 1 without gaps, in that order.
-pub struct Deck {
-    pub nodes: Vec<[f64; 3]>,
-    pub elements: Vec<Vec<usize>>,
-    pub held: Vec<usize>,
-}
-
-/// Reads `*NODE`, `*ELEMENT` and `*NSET, NSET=HELD`. `None` if a line is not understood.
-pub fn deck(text: &str) -> Option<Deck> {
-    let mut deck = Deck { nodes: Vec::new(), elements: Vec::new(), held: Vec::new() };
-    let mut keyword = "";
-    for line in text.lines().filter(|line| !line.starts_with("**")) {
-        if line.starts_with('*') {
-            keyword = line;
-            continue;
-        }
-        let mut words = line.split(',').map(str::trim);
-        let number: usize = words.next()?.parse().ok()?;
-        if keyword.starts_with("*NODE") {
-            let place: Vec<f64> = words.map(|word| word.parse().ok()).collect::<Option<_>>()?;
-            (number == deck.nodes.len() + 1).then_some(())?;
-            deck.nodes.push(place.try_into().ok()?);
-        } else if keyword.starts_with("*ELEMENT") {
-            (number == deck.elements.len() + 1).then_some(())?;
-            let nodes: Option<Vec<usize>> =
-                words.map(|word| word.parse::<usize>().ok()?.checked_sub(1)).collect();
-            deck.elements.push(nodes?);
-        } else if keyword == "*NSET, NSET=HELD" {
-            deck.held.push(number - 1);
-        }
-    }
-    Some(deck)
-}
-
-/// Nodal forces of a `*CLOAD` list, N, for each of `count` nodes.
-pub fn loads(text: &str, count: usize) -> Option<Vec<[f64; 3]>> {
-    let mut forces = vec![[0.0; 3]; count];
-    for line in text.lines() {
-        let mut words = line.split(',').map(str::trim);
-        let node: usize = words.next()?.parse().ok()?;
-        let axis: usize = words.next()?.parse().ok()?;
-        *forces.get_mut(node - 1)?.get_mut(axis - 1)? += words.next()?.parse::<f64>().ok()?;
-    }
-    Some(forces)
-}
-
-/// Displacements printed in a `.dat`, mm, of the nodes 1, 2, ….
+/// Displacements printed in a `.dat`, m, of the nodes 1, 2, ….
 pub fn displacements(dat: &str) -> Option<Vec<[f64; 3]>> {
     let mut found = Vec::new();
     for line in dat.lines().skip_while(|line| !line.contains("displacements")).skip(1) {
@@ -80,8 +33,7 @@ pub fn frequencies(dat: &str) -> Option<Vec<f64>> {
     (!found.is_empty()).then_some(found)
 }
 
-/// A symmetric matrix of `.mas` or `.sti`, put into the order node 1 x, y, z, node 2 x, … by the
-/// `.dof` beside it.
+/// A symmetric matrix of `.mas` or `.sti`, sorted by the `.dof` into the order node 1 x, y, z, node 2 x, ….
 pub fn matrix(text: &str, dof: &str) -> Option<DMatrix<f64>> {
     let place: Option<Vec<usize>> = dof
         .split_whitespace()
@@ -103,8 +55,8 @@ pub fn matrix(text: &str, dof: &str) -> Option<DMatrix<f64>> {
     Some(matrix)
 }
 
-/// Barycentric places of the quadrature points of an element with this many nodes, of equal weight:
-/// one in the middle for 4, the four of degree 2 for 10.
+/// Barycentric coordinates of CalculiX' quadrature points, of equal weight: one for a four-node element,
+/// the four of degree 2 for a ten-node element.
 fn points(nodes_per_element: usize) -> Vec<[f64; 4]> {
     if nodes_per_element == 4 {
         return vec![[0.25; 4]];
@@ -118,7 +70,7 @@ fn points(nodes_per_element: usize) -> Vec<[f64; 4]> {
     (0..4).map(point).collect()
 }
 
-/// Corners between which the nodes 5 to 10 lie.
+/// Corner nodes of the mid-side nodes 5 to 10.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
 /// Shape functions of an element with 4 or 10 nodes, and their derivatives by each of the four
@@ -139,8 +91,8 @@ fn shapes(nodes_per_element: usize, l: [f64; 4]) -> (Vec<f64>, Vec<[f64; 4]>) {
     (values, slopes)
 }
 
-/// Masses between the nodes of one element: ρ Σ w NᵢNⱼ over the points that CalculiX uses, 1 or 4,
-/// which are too few for the products of shape functions.
+/// Mass matrix of one element over its nodes, kg: ρ Σ w NᵢNⱼ over CalculiX' 1 or 4 points, which do not
+/// integrate the products of shape functions exactly.
 pub fn few_point_mass(nodes: &[[f64; 3]], element: &[usize], density: f64) -> DMatrix<f64> {
     let count = element.len();
     let points = points(count);
@@ -158,18 +110,19 @@ pub fn few_point_mass(nodes: &[[f64; 3]], element: &[usize], density: f64) -> DM
     mass
 }
 
-/// Frequencies with the mass of few points, from modes of another mass matrix under which they are
-/// orthonormal: Rayleigh–Ritz over these modes. The error is of second order in what their span misses.
+/// Frequencies (Hz) with the mass of few points: Rayleigh–Ritz over modes that are orthonormal under the
+/// exact mass.
 pub fn few_point_frequencies(
-    deck: &Deck,
+    nodes: &[[f64; 3]],
+    elements: &[Vec<usize>],
     density: f64,
     frequencies: &[f64],
     shapes: &[Vec<[f64; 3]>],
 ) -> Option<Vec<f64>> {
     let count = frequencies.len();
     let mut mass = DMatrix::zeros(count, count);
-    for element in &deck.elements {
-        let of = few_point_mass(&deck.nodes, element, density);
+    for element in elements {
+        let of = few_point_mass(nodes, element, density);
         for axis in 0..3 {
             let motion =
                 DMatrix::from_fn(element.len(), count, |n, mode| shapes[mode][element[n]][axis]);
