@@ -140,8 +140,7 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     let thin = walled(0.99 * across);
     let refused = start::at_equilibrium(&thin).unwrap_err();
     assert!(matches!(refused, StaticsError::ThroughWall { .. }), "{refused}");
-    let mut moving = Simulation::new(thin, fixed_step(1e-6, Start::Nominal)).unwrap();
-    let ended = (0..100_000).find_map(|_| moving.step().err()).unwrap();
+    let ended = Simulation::new(thin, fixed_step(1e-6, Start::Nominal)).map(|_| ()).unwrap_err();
     assert!(matches!(ended, SimulationError::ThroughWall { .. }), "{ended}");
     // Without its spring nothing holds it.
     let mut loose = assembly.clone();

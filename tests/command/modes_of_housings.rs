@@ -64,7 +64,7 @@ fn natural_shapes_of_housings_are_counted() {
 
 /// What equilibria leave out is judged by the frequencies that `modes` tells: housing C rocks, which its race does not follow.
 #[test]
-fn statics_and_plans_know_how_housings_swing() {
+fn statics_reports_the_lowest_frequency_of_modes() {
     let scene = shipped("housing_c_tet10.toml");
     let scene = scene.to_str().unwrap();
     let after = |text: &str, words: &str| {
@@ -74,7 +74,6 @@ fn statics_and_plans_know_how_housings_swing() {
     let place = Place::new();
     let out = place.path("out");
     let statics = said(&bearing(&["statics", scene, "--out", out.to_str().unwrap()]));
-    let plan = said(&bearing(&["plan", scene]));
     let motions = said(&bearing(&["modes", scene, "--dry"]));
     let mode = |name: &str| {
         let line = motions.lines().find(|line| line.ends_with(name)).unwrap();
@@ -82,13 +81,10 @@ fn statics_and_plans_know_how_housings_swing() {
     };
     let rocks = mode("outer_race_tilt_y");
     assert!((1300.0..1500.0).contains(&rocks), "{motions}");
-    let lowest = "lowest natural frequency about ";
-    // To the digits that are told; the plan's load is another one, which contact hardly feels.
+    let lowest = "lowest natural frequency ";
+    // To the digits that are printed.
     let off = |found: f64, expected: f64| (found / expected - 1.0).abs();
     assert!(off(after(&statics, lowest), rocks) <= 5e-4, "{statics}");
-    assert!(off(after(&plan, lowest), rocks) <= 5e-3, "{plan}");
-    // Of the motions across that a course sets off, the slowest rings most: 3100 Hz if the housing followed.
-    assert!(off(after(&plan, "which rings at "), mode("outer_race_y")) <= 5e-3, "{plan}");
 
     // And how a shaft bends between them; Hz, mode 2 of all, since nothing drives the shaft along its axis.
     let scene = shipped("rotor_in_pillow_blocks.toml");

@@ -23,7 +23,6 @@ fn plans_of_shafts_have_plain_words() {
         "left out are natural ones from 8044 Hz on, whose part of the static compliance at a hold, up to 27 %, those answers have",
         "1 unbalance at places along the body shaft",
         "in proportion to mass, of bending; where it brakes all motion",
-        "strikes of balls or races let it grow; at least",
     ] {
         assert!(said.contains(part), "{part}: {said}");
     }

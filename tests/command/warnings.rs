@@ -148,7 +148,9 @@ fn of_solids() {
     let coarse = changed(&bar(1, "0.3", "-100 N"), "across = 4, up = 4", "across = 1, up = 1");
     for command in ["statics", "modes"] {
         assert_raised("W08", command, &coarse, &fine);
-        assert_raised("W09", command, &bar(1, "0.4999", "-100 N"), &bar(2, "0.4999", "-100 N"));
+        // Modes of a nearly incompressible solid are hard to tell apart.
+        let poisson = if command == "modes" { "0.499" } else { "0.4999" };
+        assert_raised("W09", command, &bar(1, poisson, "-100 N"), &bar(2, poisson, "-100 N"));
     }
     assert_raised("W10", "statics", &bar(2, "0.3", "-150 kN"), &fine);
     assert_raised("W11", "statics", &cube("-11.2", ""), &cube("-6", ""));

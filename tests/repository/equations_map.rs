@@ -35,7 +35,8 @@ fn in_backticks(text: &str) -> Vec<String> {
 
 fn rows() -> Vec<Row> {
     let page = read(&root().join("docs/theory.md"));
-    let lines = page.lines().filter(|line| line.starts_with('|'));
+    let (equations, _) = page.split_once("\n# Notation").expect("equations before the notation");
+    let lines = equations.lines().filter(|line| line.starts_with('|'));
     let cells = lines.map(|line| line.trim_matches('|').split('|').map(str::trim).collect());
     let rows = cells.filter(|cells: &Vec<&str>| cells[0] != "Equation" && cells[0] != "---");
     rows.map(|cells| {

@@ -384,7 +384,7 @@ fn ends_without_equilibrium_are_told() {
 #[test]
 fn a_step_that_failed_spoils_no_other() {
     let body = Bushing { inner_diameter: 0.0197, thickness: 0.00835, length: 0.06 };
-    let cells = BushingMesh { around: 6, radial: 3, axial: 2, grading: 1.0, part: Part::Quarter };
+    let cells = BushingMesh { around: 8, radial: 4, axial: 3, grading: 1.0, part: Part::Quarter };
     let mesh = bushing(&body, &cells).unwrap().quadratic().unwrap().mesh;
     let ramp = Profile::Ramp { from: 0.0, to: 5e-3, start: 0.0, duration: 5.0 };
     let prescribed = supports(

@@ -302,8 +302,18 @@ pub fn rows(page: &str) -> BTreeMap<String, Row> {
 /// Published numbers of a case that the page shows otherwise.
 pub fn stale(page: &str, case: &str, checks: &[CheckReport]) -> Vec<String> {
     let rows = rows(page);
-    let differs = |check: &CheckReport| {
-        let id = check.published_id.as_ref().filter(|id| settles(check, id))?;
+    // Of several checks of one number the page shows the last of the least favourable status.
+    let mut shown_checks: BTreeMap<&str, &CheckReport> = BTreeMap::new();
+    for check in checks {
+        let Some(id) = check.published_id.as_deref().filter(|id| settles(check, id)) else {
+            continue;
+        };
+        let kept = shown_checks.entry(id).or_insert(check);
+        if severity(check.status) >= severity(kept.status) {
+            *kept = check;
+        }
+    }
+    let differs = |(id, check): (&str, &CheckReport)| {
         let row = rows.get(&format!("{case}/{id}"))?;
         let ours = shown(check.value, &check.unit);
         let same = row.status == "not run" || row.ours == ours && row.status == check.status.word();
@@ -316,5 +326,5 @@ pub fn stale(page: &str, case: &str, checks: &[CheckReport]) -> Vec<String> {
             )
         })
     };
-    checks.iter().filter_map(differs).collect()
+    shown_checks.into_iter().filter_map(differs).collect()
 }
