@@ -1,9 +1,10 @@
-//! Trustworthy dynamic simulation of rolling bearings on flexible supports.
+//! Simulation of ball bearings, rigid or on flexible supports: housings, rubber bushings, shafts.
 //!
-//! One module per chapter of the source dissertation; chapters are pure laws on plain data.
-//! Imports run one way only:
-//! `kinematics, mesh, elements <- ch2 <- ch3 <- ch4 <- ch5 <- solver <- scene, output <- main`.
-//! `docs/theory.md` maps every equation to its item here and to its verification case.
+//! Chapters hold the equations of the source as functions on plain data. The solver works on one assembly: lists of bodies,
+//! connections, loads and sensors. Imports run one way:
+//! `kinematics, mesh, elements <- ch2_housing <- ch3_bushing <- ch4_rotor <- ch5_cage <- numeric, assembly, members, solids,
+//! equilibrium, motion, vibrations <- scene <- output`. `docs/theory.md` lists the home of every equation and its
+//! verification case.
 #![forbid(unsafe_code)]
 // Indices are the notation of components, as in the equations.
 #![allow(clippy::needless_range_loop)]

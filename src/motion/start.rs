@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 /// State vector at equilibrium of all bodies under the loads at t = 0, balls and cages rolling and
-/// all as fast as the equilibrium moves on (see [`quasi_static`]); what turns stands still for the
+/// all as fast as the equilibrium moves on (see [`rolling_velocity`]); what turns stands still for the
 /// equilibrium itself (see [`at_start`]).
 ///
 /// What sits in a solid starts where it rests, the others in equilibrium with it there; solids start as their

@@ -1,7 +1,7 @@
-//! Scenes: what a person describes in TOML or JSON, and what the program makes of it.
+//! Scenes: a TOML or JSON file that describes bearings or a solid, and its way to SI data.
 //!
-//! text → tree of values with their places → [`Document`] (given keys, checked one by one
-//! against the key table in [`keys`]) → [`Scene`] (SI, validated as a whole, every default named).
+//! [`text`] (files, tree of values with positions, units) → [`Document`] (given keys, checked against [`tables`]) →
+//! [`Scene`] (SI, validated, every default named; [`mod@resolve`]) → lists and meshes for the solver ([`build`]).
 //!
 //! ```
 //! use bearing_dynamics::scene::{self, Format};
@@ -45,7 +45,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// The first thing wrong with the file or its contents, with its place. The solid's mesh is not
-/// read yet: that is [`solid_mesh::build`].
+/// read yet: that is [`build::solid_mesh::build`].
 pub fn read_subject(path: &Path) -> Result<Subject, SceneError> {
     resolve_subject(&Document::read_file(path)?)
 }

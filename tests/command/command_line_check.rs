@@ -133,7 +133,7 @@ fn a_scene_in_json_gives_the_bits_of_the_one_in_toml() {
         "interference_fit.toml",
         "shaft_back_to_back.toml",
     ] {
-        let path = scene(&name);
+        let path = scene(name);
         let value: Value = toml::from_str(&read(Path::new(&path))).unwrap();
         let same = write(root.path(), "scene.json", &value.to_string());
         assert!(solution(root.path(), &path) == solution(root.path(), &same), "{name}");

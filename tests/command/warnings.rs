@@ -149,7 +149,7 @@ fn of_solids() {
     for command in ["statics", "modes"] {
         assert_raised("W08", command, &coarse, &fine);
         // Modes of a nearly incompressible solid are hard to tell apart.
-        let poisson = if command == "modes" { "0.499" } else { "0.4999" };
+        let poisson = if command == "modes" { "0.46" } else { "0.4999" };
         assert_raised("W09", command, &bar(1, poisson, "-100 N"), &bar(2, poisson, "-100 N"));
     }
     assert_raised("W10", "statics", &bar(2, "0.3", "-150 kN"), &fine);
