@@ -167,7 +167,9 @@ fn blow(context: &mut CaseContext) -> Result<(), CaseError> {
 
     for (place, name) in PLACES.iter().enumerate() {
         let part = course.off(&shapes, place) / expected;
-        let what = format!("{name}: equilibria off shapes, of the swing, over (f/f_n)²");
+        let what = format!(
+            "{name}: distance of equilibria from the reduced run over its oscillation, over (f/f_n)²"
+        );
         let source = "largest acceleration of the blow over ω² of the lowest natural frequency";
         context.check(
             Check::new(&format!("{name}_inertia"), &what, "1", part)
@@ -183,12 +185,12 @@ fn blow(context: &mut CaseContext) -> Result<(), CaseError> {
             context.check(
                 Check::new(
                     &format!("{name}_{id}"),
-                    &format!("{name}: {way} off explicit steps, of the swing"),
+                    &format!("{name}: {way} off explicit steps, over the oscillation"),
                     "1",
                     steps.off(other, place),
                 )
                 .independent(0.0, "explicit steps of every element")
-                .absolute(5e-3, "half a per cent of the swing"),
+                .absolute(5e-3, "half a per cent of the oscillation"),
             );
         }
     }
