@@ -22,7 +22,7 @@ pub fn room_text(path: &Path, source: &io::Error) -> &'static str {
     if is_kept("state.json") {
         "; what was written before is whole. Make room and go on with --resume, from the last state that could be kept \
          (--save-every)"
-    } else if is_kept("sweep.journal") {
+    } else if is_kept("sweep.json") {
         "; what was written before is whole. Make room and sweep again: it goes on from the points that are done"
     } else {
         "; what was written before is whole, but nothing to go on from was kept. Make room and run again"

@@ -207,7 +207,7 @@ pub fn holds(folder: &Path) -> Result<Holds, FolderError> {
     if manifest || (summary.is_some() && there(RESOLVED)) {
         return Ok(Holds::Pack);
     }
-    if sweep.is_some() || there("sweep.journal") {
+    if sweep.is_some() {
         return Ok(Holds::Sweep);
     }
     if state.is_some() {

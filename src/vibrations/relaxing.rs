@@ -85,7 +85,7 @@ impl Relaxing {
     }
 
     /// Complex stiffness Lᵀ k Z L of a motion e^{λt} at speed `speed`.
-    pub(crate) fn stiffness_at(&self, value: Complex<f64>, speed: f64) -> DMatrix<Complex<f64>> {
+    pub fn stiffness_at(&self, value: Complex<f64>, speed: f64) -> DMatrix<Complex<f64>> {
         let relaxes = 1.0 / self.relaxation_time;
         let follows = |value: Complex<f64>| value / (value + relaxes);
         let mut elongated = SMatrix::<Complex<f64>, 6, 6>::zeros();

@@ -397,17 +397,18 @@ fn nothing_from_a_file_commands_the_terminal() {
 
 /// The points of a sweep that was killed are not written over by another command.
 #[test]
-fn the_journal_of_a_sweep_keeps_its_folder() {
+fn an_unfinished_sweep_keeps_its_folder() {
     let root = tempdir().unwrap();
     let path = short_run(root.path(), "a.toml", "250 N");
     let folder = root.path().join("killed");
     fs::create_dir(&folder).unwrap();
-    fs::write(folder.join("sweep.journal"), "{\"sweep\":\"of another day\"}\n").unwrap();
+    let record = "{\"program\":\"bearing-dynamics\",\"complete\":false}";
+    fs::write(folder.join("sweep.json"), record).unwrap();
     for verb in ["run", "statics", "pack"] {
         let message = refused(&[verb, &path, "--out", &text(&folder)]);
         assert!(message.contains("holds a sweep"), "{verb}: {message}");
     }
-    assert_eq!(files(&folder), ["sweep.journal"]);
+    assert_eq!(files(&folder), ["sweep.json"]);
 }
 
 /// Pictures that earlier results left and later ones do not draw would be taken for theirs; those of others stay.

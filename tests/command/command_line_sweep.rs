@@ -17,26 +17,6 @@ use tempfile::tempdir;
 
 pub const POINTS: usize = 10_000;
 
-#[test]
-fn a_key_that_changes_nothing_is_told() {
-    let root = tempdir().unwrap();
-    let out = text(&root.path().join("out"));
-    let idle = "note: numerics.end changes no column";
-    let scene = scene("varying_compliance_run.toml");
-    let clearance = "bearing.clearance.radial=-5 um .. 5 um / 3";
-    let sweep = |axes: [&str; 2]| {
-        done(&["sweep", &scene, "--vary", axes[0], "--vary", axes[1], "--out", &out])
-    };
-    for axes in
-        [["numerics.end=1 s .. 2 s / 3", clearance], [clearance, "numerics.end=1 s .. 2 s / 3"]]
-    {
-        let said = sweep(axes);
-        assert!(said.contains(idle) && said.matches("changes no column").count() == 1, "{said}");
-    }
-    let said = sweep([clearance, "inner_race.z.load=-1 kN .. -2 kN / 2"]);
-    assert!(!said.contains("changes no column"), "{said}");
-}
-
 /// A bearing that takes its time, about a second for all points on one thread: thirteen balls with
 /// forces on them, in a tilted outer race.
 pub fn slow_scene(folder: &Path) -> String {
@@ -68,7 +48,7 @@ pub fn bytes(folder: &Path) -> [Vec<u8>; 3] {
 fn the_table_does_not_depend_on_the_number_of_threads() {
     let root = tempdir().unwrap();
     let path = slow_scene(root.path());
-    // Not a multiple of the chunk.
+    // Not a multiple of the block.
     let vary = vary_phase(1000);
     let sweep = |threads: &[&str], name: &str| {
         let out = root.path().join(name);
@@ -113,7 +93,7 @@ fn warnings_on_points_are_counted() {
     assert_eq!(pressure["at"], json!(["inner_race.z.load = -30 kN"]));
     assert!(
         said.contains("warning[W03-pressure-above-rating]")
-            && said.contains("(point 3, 2 of 5 in all)"),
+            && said.contains("(2 of 5 points, the first is point 3)"),
         "{said}"
     );
     let counted: u64 = all.iter().map(|warning| warning["points"].as_u64().unwrap()).sum();

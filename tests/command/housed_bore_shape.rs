@@ -258,11 +258,10 @@ fn a_sweep_does_not_go_on_in_another_mesh() {
     let sweep = || into_folder("sweep", &scene, &out, &further);
     let quiet = || std::process::Stdio::null();
     let mut child = sweep().stdout(quiet()).stderr(quiet()).spawn().unwrap();
-    let journal = out.join("sweep.journal");
+    let csv = out.join("sweep.csv");
     let start = std::time::Instant::now();
-    // The header, a chunk of points and the empty rest after the last line break.
-    while fs::read(&journal).map_or(0, |text| text.split(|&b| b == b'\n').count()) < 3 {
-        assert!(start.elapsed().as_secs() < 60, "no journal");
+    while fs::read(&csv).map_or(0, |text| text.split(|&b| b == b'\n').count()) < 18 {
+        assert!(start.elapsed().as_secs() < 60, "no rows");
         assert!(child.try_wait().unwrap().is_none(), "over before it could be killed");
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
@@ -272,7 +271,7 @@ fn a_sweep_does_not_go_on_in_another_mesh() {
     let refused = sweep().output().unwrap();
     assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
     let said = stderr(&refused);
-    assert!(said.contains("sweep.journal belongs to an unfinished sweep"), "{said}");
+    assert!(said.contains("sweep.json belongs to an unfinished sweep"), "{said}");
     fs::write(place.path("housing.msh"), first).unwrap();
     assert!(succeed(sweep()).contains(" resumed) in "));
 }

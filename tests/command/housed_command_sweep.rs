@@ -18,7 +18,7 @@ fn fits_and_loads_are_swept_as_statics_has_them() {
         assert!(said.starts_with("21 points in "), "{said}");
         out
     };
-    // Two chunks, and housings kept within each: neither shows.
+    // Two blocks, and housings kept within each: neither shows.
     let [one, two] = [("one", "1"), ("two", "2")].map(|(name, threads)| sweep(name, threads));
     let table = |folder: &std::path::Path| fs::read(folder.join("sweep.npy")).unwrap();
     assert!(table(&one) == table(&two));

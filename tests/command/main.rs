@@ -60,6 +60,6 @@ mod solid_command;
 mod solid_command_errors;
 mod solid_command_numbers;
 mod solid_command_resume;
-mod sweep_journal;
+mod sweep_resume;
 mod turning_springs;
 mod warnings;

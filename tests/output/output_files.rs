@@ -357,10 +357,8 @@ fn advice_on_a_full_disk_is_about_what_was_kept() {
         assert!(said(file).contains("nothing to go on from was kept"), "{}", said(file));
         assert!(!said(file).contains("--resume"), "{}", said(file));
     }
-    fs::write(folder.path().join("sweep.journal"), "").unwrap();
-    assert!(
-        said("sweep.journal").contains("sweep again: it goes on from the points that are done")
-    );
+    fs::write(folder.path().join("sweep.json"), "").unwrap();
+    assert!(said("sweep.json").contains("sweep again: it goes on from the points that are done"));
     fs::write(folder.path().join("state.json"), "{}").unwrap();
     for file in files {
         assert!(said(file).contains("go on with --resume"), "{}", said(file));

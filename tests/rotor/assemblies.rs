@@ -2,6 +2,7 @@
 
 use crate::beam::steel;
 use crate::relaxing::two_on_relaxing;
+use crate::single_shaft::{SingleShaft, Support, Unbalance, orbit, response};
 use bearing_dynamics::assembly::lists::{Assembly, Body, GROUND, Mobility};
 use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
 use bearing_dynamics::assembly::mount::Mount;
@@ -13,9 +14,8 @@ use bearing_dynamics::members::flexible_shaft::ElasticShaft;
 use bearing_dynamics::members::shaft_modes::{Kept, free_shaft};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
-use bearing_dynamics::vibrations::rotor::{Rotor, RotorError, RotorModel, Support};
+use bearing_dynamics::vibrations::rotor::{RotorError, RotorModel};
 use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, whirling};
-use bearing_dynamics::vibrations::unbalance_response::Unbalance;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix4, RowVector2, Vector2};
 
 pub const SPEED: f64 = 900.0;
@@ -102,8 +102,8 @@ fn an_assembly_whirls_as_its_shaft_on_supports() {
         stiffness: Matrix4::from_diagonal(&[ky, kz, ty, tz].into()),
         damping: Matrix4::from_diagonal(&[cy, cz, dy, dz].into()),
     });
-    let rotor = Rotor { supports: supports.to_vec(), modes: 60, ..Rotor::new(beam()) };
-    let theirs = RotorModel::new(&rotor).unwrap();
+    let rotor = SingleShaft { supports: supports.to_vec(), modes: 60, ..SingleShaft::new(beam()) };
+    let theirs = rotor.model().unwrap();
     for speed in [0.0, SPEED] {
         let across: Vec<_> = ours.model.whirls(speed, 12).unwrap();
         let across: Vec<_> = across.into_iter().filter(|whirl| whirl.across > 0.5).collect();
@@ -172,8 +172,8 @@ fn an_orbit_that_turns_with_the_shaft_feels_no_damping_inside_it() {
     let (at, speed) = (without.stations[0], 0.8 * SPEED);
     let unbalance = Unbalance { at, moment: 1e-3, angle: 0.4 };
     let orbits = [&without, &with].map(|model| {
-        let response = model.response(&[unbalance], speed).unwrap();
-        model.orbit(&response, 0).circles()
+        let response = response(&model, &[unbalance], speed).unwrap();
+        orbit(&model, &response, 0).circles()
     });
     let [[forward, backward], [same, _]] = orbits;
     assert!(backward <= 1e-8 * forward, "{backward} {forward} {same}");
@@ -329,8 +329,8 @@ fn dashpots_turn_with_the_shaft_that_they_begin_at() {
         stiffness: Matrix4::from_diagonal(&[2e7, 2e7, 500.0, 500.0].into()),
         damping: Matrix4::from_diagonal(&[BRAKES[1], BRAKES[1], BRAKES[4], BRAKES[4]].into()),
     });
-    let rotor = Rotor { supports: supports.to_vec(), modes: 60, ..Rotor::new(beam()) };
-    let mut theirs = RotorModel::new(&rotor).unwrap();
+    let rotor = SingleShaft { supports: supports.to_vec(), modes: 60, ..SingleShaft::new(beam()) };
+    let mut theirs = rotor.model().unwrap();
     for at in PLACES {
         let station = theirs.stations.iter().position(|place| (place - at).abs() < 1e-9).unwrap();
         let row = |i: usize| theirs.basis.row(4 * station + i).into_owned();

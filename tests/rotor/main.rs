@@ -2,6 +2,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../verification/src/single_shaft.rs"]
+mod single_shaft;
 
 mod assemblies;
 mod beam;

@@ -1,13 +1,14 @@
 //! Whirl, modes and critical speeds on springs that relax, against another formulation and roots of their equations.
 
 use crate::assemblies::{ARMS, EVEN, PLACES, SPEED, assembly, beam, two_rigid, whirl};
+use crate::single_shaft::{SingleShaft, Support};
 use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::equilibrium::initial::{at_start, static_assembly};
 use bearing_dynamics::members::connection::{Law, MaxwellElement};
 use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
 use bearing_dynamics::vibrations::relaxing::Relaxing;
-use bearing_dynamics::vibrations::rotor::{LinearSystem, Rotor, RotorModel, Support};
+use bearing_dynamics::vibrations::rotor::{LinearSystem, RotorModel};
 use bearing_dynamics::vibrations::small_motions::{natural_motions, whirling};
 use bearing_dynamics::vibrations::whirl::Whirl;
 use nalgebra::{Complex, DMatrix, Matrix4};
@@ -228,8 +229,9 @@ fn maxwell_elements_take_part_in_whirl_of_a_shaft_that_bends() {
             stiffness: Matrix4::from_diagonal(&[4e7, 4e7, 800.0, 800.0].into()),
             damping: Matrix4::zeros(),
         });
-        let rotor = Rotor { supports: supports.to_vec(), modes: 1000, ..Rotor::new(beam()) };
-        let mut theirs = RotorModel::new(&rotor).unwrap();
+        let rotor =
+            SingleShaft { supports: supports.to_vec(), modes: 1000, ..SingleShaft::new(beam()) };
+        let mut theirs = rotor.model().unwrap();
         for at in PLACES {
             let station =
                 theirs.stations.iter().position(|place| (place - at).abs() < 1e-9).unwrap();

@@ -4,7 +4,7 @@
 mod solid_common;
 
 mod bore_contact;
-mod cylinder_contact_runs;
+mod cylinder_contact;
 mod elastomer;
 mod material_laws;
 mod rubber;

@@ -1,9 +1,9 @@
 //! The steady critical speed of 4.3.4's rotor, and what a run-up does to it.
 
+use crate::single_shaft::{Fixed, SingleShaft, Unbalance, peak};
 use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::vibrations::rotor::{Held, Rotor, RotorModel};
-use bearing_dynamics::vibrations::unbalance_response::Unbalance;
+use bearing_dynamics::vibrations::rotor::RotorModel;
 use std::f64::consts::PI;
 
 use crate::case::{Case, CaseError, Tier};
@@ -48,10 +48,10 @@ fn model(damping: f64) -> Result<RotorModel, CaseError> {
     // A mass spread over a section has inertias too; the source gives the disk no dimensions.
     let at = 0.5 * LENGTH;
     beam.discs.push(BeamDisc { at, mass: DISC, axial: 0.0, transverse: 0.0 });
-    let mut rotor = Rotor::new(beam);
-    rotor.held = vec![Held::pin(0.0), Held::pin(LENGTH)];
+    let mut rotor = SingleShaft::new(beam);
+    rotor.fixed = vec![Fixed::pin(0.0), Fixed::pin(LENGTH)];
     rotor.mass_damping = damping;
-    Ok(RotorModel::new(&rotor)?)
+    Ok(rotor.model()?)
 }
 
 /// The oracle's critical speed with a disc of that mass, rad/s.
@@ -93,7 +93,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     let damped = model(DAMPING)?;
     let station = damped.station(0.5 * LENGTH).ok_or_else(|| CaseError::message("no station"))?;
     let unbalance = Unbalance { at: 0.5 * LENGTH, moment: UNBALANCE, angle: 0.0 };
-    let [speed, height] = damped.peak(&[unbalance], station, [0.8 * critical, 1.2 * critical]);
+    let [speed, height] = peak(&damped, &[unbalance], station, [0.8 * critical, 1.2 * critical]);
     // The peak of e Ω²/|ω² − Ω² + iαΩ|.
     let ratio = DAMPING / oracle;
     let peak = oracle / (1.0 - 0.5 * ratio * ratio).sqrt();

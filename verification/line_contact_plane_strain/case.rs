@@ -1,11 +1,12 @@
 //! A rigid cylinder pressed on a large block in plane strain, at rest and by explicit steps, against
 //! Hertz.
 
+use bearing_dynamics::ch2_housing::bore_contact;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solids::contact::ContactRun;
+use bearing_dynamics::solids::contact::{Pressed, closed_limit, moved, press};
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium_in_contact};
 use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 
@@ -152,22 +153,24 @@ impl Way {
             still.clone(),
             still,
         )?;
-        solid.step_size = 0.95 * contact.step_limit(&solid.model, &solid.limit).step;
-        // Nodes further than the whole way down are never tested.
-        let mut run = ContactRun::new(contact, &solid, 4.0 * self.indentation())?;
+        let limit = closed_limit(&solid.model, &contact.nodes, contact.penalty, &solid.limit);
+        solid.step_size = 0.95 * limit.step;
+        let (penalty, nodes) = (contact.penalty, &contact.nodes[..]);
         while solid.time < DURATION {
-            run.step(&mut solid)?;
+            solid.step(|t, displacement, forces| {
+                let (cylinder, frame) = &contact.at(t);
+                press(&Pressed { cylinder, frame, penalty, nodes, displacement }, forces);
+            })?;
         }
-        let (near, far) = run.counts();
-        let effort = format!("{} steps; {near} nodes tested, {far} out of reach", solid.steps);
-        let nodes = run.nodal_forces(solid.time, &solid.displacement);
+        let effort = format!("{} steps", solid.steps);
+        let (cylinder, frame) = contact.at(solid.time);
+        let (at, mut nodal) = (|node| moved(&solid.displacement, node), Vec::new());
+        let sum =
+            bore_contact::contact(&cylinder, &frame, penalty, nodes, at, |node, _, _, force| {
+                nodal.push((*node, force));
+            });
         let displacement = solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
-        Ok(Answer {
-            line: line_contact(block, &nodes),
-            displacement,
-            deepest: run.sum.deepest,
-            effort,
-        })
+        Ok(Answer { line: line_contact(block, &nodal), displacement, deepest: sum.deepest, effort })
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::process::Command;
 
+use crate::single_shaft::{SingleShaft, Support, Unbalance, orbit, response};
 use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
-use bearing_dynamics::vibrations::rotor::{Rotor, RotorModel, Support};
-use bearing_dynamics::vibrations::unbalance_response::Unbalance;
+use bearing_dynamics::vibrations::rotor::RotorModel;
 use nalgebra::Matrix4;
 use serde::Deserialize;
 
@@ -62,7 +62,7 @@ fn model() -> Result<RotorModel, CaseError> {
     let discs = [(0.25, 8.0, 0.05, 0.03), (0.5, 3.0, 0.02, 0.011)];
     let discs = discs.map(|(at, mass, axial, transverse)| BeamDisc { at, mass, axial, transverse });
     beam.discs = discs.to_vec();
-    let mut rotor = Rotor::new(beam);
+    let mut rotor = SingleShaft::new(beam);
     let bearings = [(0.05, [4e7, 7e7], [500.0, 800.0]), (0.4, [6e7, 9e7], [700.0, 700.0])];
     let supports = bearings.map(|(at, [ky, kz], [cy, cz])| Support {
         at,
@@ -70,7 +70,7 @@ fn model() -> Result<RotorModel, CaseError> {
         damping: Matrix4::from_diagonal(&[cy, cz, 0.0, 0.0].into()),
     });
     rotor.supports = supports.to_vec();
-    Ok(RotorModel::new(&rotor)?)
+    Ok(rotor.model()?)
 }
 
 fn run(context: &mut CaseContext) -> Result<(), CaseError> {
@@ -118,11 +118,15 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         .independent(0.0, ROSS)
         .absolute(1e-5, "0.1 % of the largest ratio, 0.01"),
     );
-    response(context, &kept, &model)?;
+    compare_response(context, &kept, &model)?;
     compare(context, &kept.run_up)
 }
 
-fn response(context: &mut CaseContext, kept: &Kept, model: &RotorModel) -> Result<(), CaseError> {
+fn compare_response(
+    context: &mut CaseContext,
+    kept: &Kept,
+    model: &RotorModel,
+) -> Result<(), CaseError> {
     let unbalance = Unbalance { at: 0.25, moment: 1e-3, angle: 0.0 };
     for place in &kept.response {
         let missing = || CaseError::message(format!("no station at {} m", place.at));
@@ -130,9 +134,9 @@ fn response(context: &mut CaseContext, kept: &Kept, model: &RotorModel) -> Resul
         let largest = place.first.iter().chain(&place.second).copied().fold(0.0, f64::max);
         let mut worst = 0.0f64;
         for (n, &speed) in kept.speeds.iter().skip(1).enumerate() {
-            let response = model.response(&[unbalance], speed);
+            let response = response(model, &[unbalance], speed);
             let response = response.ok_or_else(|| CaseError::message("undamped resonance"))?;
-            let orbit = model.orbit(&response, station);
+            let orbit = orbit(model, &response, station);
             for (ours, theirs) in
                 [(orbit.y.norm(), place.first[n]), (orbit.z.norm(), place.second[n])]
             {

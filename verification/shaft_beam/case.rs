@@ -1,8 +1,9 @@
 //! Frequencies and critical speeds of beams against transfer matrices.
 
+use crate::single_shaft::{Fixed, SingleShaft, Support};
 use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
 use bearing_dynamics::output::plots;
-use bearing_dynamics::vibrations::rotor::{Held, Rotor, RotorModel, Support};
+use bearing_dynamics::vibrations::rotor::RotorModel;
 use bearing_dynamics::vibrations::whirl::Whirl;
 use nalgebra::Matrix4;
 
@@ -68,12 +69,12 @@ impl Shaft {
             self.discs.iter().map(|&at| BeamDisc { at, mass, axial, transverse }).collect();
         beam.longest_element = longest;
         let length = beam.length();
-        let mut rotor = Rotor::new(beam);
+        let mut rotor = SingleShaft::new(beam);
         for (end, at) in self.ends.into_iter().zip([0.0, length]) {
             match end {
                 End::Free => {}
-                End::Pinned => rotor.held.push(Held::pin(at)),
-                End::Clamped => rotor.held.push(Held::clamp(at)),
+                End::Pinned => rotor.fixed.push(Fixed::pin(at)),
+                End::Clamped => rotor.fixed.push(Fixed::clamp(at)),
             }
         }
         let support = |&(at, stiffness): &(f64, f64)| Support {
@@ -82,7 +83,7 @@ impl Shaft {
             damping: Matrix4::zeros(),
         };
         rotor.supports = self.springs.iter().map(support).collect();
-        Ok(RotorModel::new(&rotor)?)
+        Ok(rotor.model()?)
     }
 
     /// The same as the oracle has it.

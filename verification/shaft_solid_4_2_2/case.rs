@@ -2,13 +2,13 @@
 
 mod full;
 
+use crate::single_shaft::{Fixed, SingleShaft};
 use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
 use bearing_dynamics::members::shaft_modes::{AttachedStation, BendingPlane, ShaftShapes};
 use bearing_dynamics::mesh::generate::shaft;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solids::condensed_shaft::matrices;
 use bearing_dynamics::solids::meshed_shaft::ShaftMesh;
-use bearing_dynamics::vibrations::rotor::{Held, Rotor, RotorModel};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
@@ -381,9 +381,9 @@ fn spinning(context: &mut CaseContext) -> Result<(), CaseError> {
     beam.mesh = Some(ShaftMesh { order, longest_layer: f64::INFINITY, around, radial });
     let [mass, axial, transverse] = DISC;
     beam.discs = vec![BeamDisc { at: LENGTH, mass, axial, transverse }];
-    let mut rotor = Rotor::new(beam);
-    rotor.held.push(Held::clamp(0.0));
-    let model = RotorModel::new(&rotor)?;
+    let mut rotor = SingleShaft::new(beam);
+    rotor.fixed.push(Fixed::clamp(0.0));
+    let model = rotor.model()?;
     let parts = [Part::Length(length()), Part::Disc { mass, axial, transverse }];
     let mut rows = Vec::new();
     let mut first = Vec::new();
@@ -431,7 +431,7 @@ fn spinning(context: &mut CaseContext) -> Result<(), CaseError> {
     // Of the shaft alone: what its own gyroscopic terms split, without a disc.
     let mut alone = rotor.clone();
     alone.beam.discs.clear();
-    let model = RotorModel::new(&alone)?;
+    let model = alone.model()?;
     let [one, other] = [0, 1].map(|i| model.whirls(2.0 * SPIN, 2).map(|all| all[i].frequency()));
     let (one, other) = (one?, other?);
     let own = [Part::Length(length())];

@@ -40,6 +40,7 @@ pub mod readme;
 pub mod report;
 pub mod rotor_run_up;
 pub mod runner;
+pub mod single_shaft;
 pub mod solid_bodies;
 pub mod solids;
 pub mod sources;

@@ -2,6 +2,7 @@
 
 use crate::commands::assembly::lists::Lists;
 use crate::commands::assembly::still;
+use bearing_dynamics::output::journal::hexadecimal;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::tables::keys;
 use bearing_dynamics::scene::{Document, SceneError, Subject, SweepAxis, resolve, resolve_subject};
@@ -72,12 +73,10 @@ impl Grid {
         self.axes.iter().map(SweepAxis::len).product()
     }
 
-    pub fn chunks(&self, size: usize) -> usize {
-        self.len().div_ceil(size)
-    }
-
-    pub fn chunk_range(&self, index: usize, size: usize) -> Range<usize> {
-        index * size..((index + 1) * size).min(self.len())
+    /// Points of each block of `size`.
+    pub fn blocks(&self, size: usize) -> impl Iterator<Item = Range<usize>> {
+        let points = self.len();
+        (0..points).step_by(size).map(move |first| first..(first + size).min(points))
     }
 
     /// Index on every axis of a point.
@@ -123,14 +122,14 @@ impl Grid {
         if others.any(|point| problem(point).is_ok()) { Ok(()) } else { Err(first) }
     }
 
-    /// Identifies scene, axes, program version and mode; a journal belongs to one of them. `mesh` is
-    /// the content of a file that the scene names.
-    pub fn fingerprint(&self, document: &Document, mesh: &[u8], cold: bool) -> String {
+    /// SHA-256 of scene, axes, program version and mode, to which the rows of an unfinished sweep belong. `mesh` is the content of
+    /// the mesh files of the scene.
+    pub fn hash(&self, document: &Document, mesh: &[u8], cold: bool) -> String {
         let mut hash = Sha256::new();
         hash.update(document.text());
         document.bases().iter().for_each(|(_, text)| hash.update(text));
         hash.update(mesh);
         hash.update(format!("{:?} {cold} {}", self.axes, env!("CARGO_PKG_VERSION")));
-        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hexadecimal(hash)
     }
 }

@@ -1,39 +1,35 @@
-//! `bearing sweep SCENE --vary key=values`: one static solution a point, one table out.
+//! `bearing sweep SCENE --vary key=values`: one equilibrium for each point of a grid, one table for all.
 //!
-//! Points are solved in chunks of fixed size. Inside a chunk each solution starts from its
-//! neighbour's, so the chunk is the unit that is repeated, never split: neither the number of
-//! threads nor an interruption changes a bit of the table. A finished chunk is one line of the
-//! journal, from which the same command resumes.
+//! Points are solved in blocks of fixed size. Inside a block each search starts from the solution of the point before, and blocks share
+//! nothing. Neither the number of threads nor an interruption changes a bit of the table.
 
 mod grid;
 pub(super) mod housings;
-mod journal;
 mod point;
 mod report;
+mod table;
 
 use super::earlier::{Writes, claimed};
 use super::{CommandResult, Outcome, interruption, reach, results_folder, say};
 use bearing_dynamics::output::Column;
-use bearing_dynamics::output::warnings::Warning;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use grid::Grid;
 use housings::Kept;
 use indicatif::{ProgressBar, ProgressStyle};
-use journal::{Chunk, Journal, PointsWarned, gather};
 use rayon::prelude::*;
 use std::error::Error;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
+use table::Table;
 
-/// Points in a chunk: enough for warm starts to pay, few enough to lose little when interrupted.
-const CHUNK: usize = 64;
-/// The same with a housing, where a point takes a hundred times as long.
-const HOUSED_CHUNK: usize = 16;
-/// Where each point takes seconds, for a bushing's springs or the shapes of a shaft of tetrahedra: a signal waits for two at most, and
-/// threads have something to share.
-const SLOW_CHUNK: usize = 2;
+/// Points in a block: enough for warm starts to pay, few enough to lose little when interrupted.
+const BLOCK: usize = 16;
+/// The same if points take seconds and share nothing: with springs fitted to a bushing, or modes of a shaft of tetrahedra.
+const SLOW_BLOCK: usize = 2;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -80,94 +76,79 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     };
     let subject = first.as_ref().ok().cloned().or_else(whole);
     let columns = point::columns(&grid, subject.as_ref());
-    let housed = subject.as_ref().is_some_and(|scene| scene.housing_method().is_some());
-    let bushings = grid.axes.iter().any(|axis| axis.key.contains(".bushing."));
-    let mut bodies = subject.iter().flat_map(|scene| &scene.bodies);
-    let meshed = bodies.any(|body| body.beam.as_ref().is_some_and(|of| of.beam.mesh.is_some()));
-    let size = match (bushings || meshed, housed) {
-        (true, _) => SLOW_CHUNK,
-        (false, true) => HOUSED_CHUNK,
-        (false, false) => CHUNK,
-    };
-    let fingerprint = grid.fingerprint(&document, &mesh, arguments.cold);
-    let points = |index| grid.chunk_range(index, size).len();
-    let journal = Journal::open(&folder, &fingerprint, grid.chunks(size), points, arguments.fresh)?;
-    let resumed = journal.finished();
-    report::remove_earlier(&folder)?;
+    let block = block_size(&grid, subject.as_ref());
+    let hash = grid.hash(&document, &mesh, arguments.cold);
+    let table = Table::open(&folder, (&document, &grid, &hash), columns, arguments.fresh)?;
+    let blocks: Vec<_> = grid.blocks(block).filter(|points| !table.has_all(points)).collect();
+    let open: usize = blocks.iter().map(Range::len).sum();
+    let resumed = grid.len() - open;
 
     let progress = progress_bar(&grid, resumed);
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let missing = journal.missing();
-    let failed: Result<(), Box<dyn Error + Send + Sync>> = pool.install(|| {
-        missing.par_iter().try_for_each(|&index| {
+    let header = table.columns.clone();
+    let table = Mutex::new(table);
+    let solved: Result<(), Box<dyn Error + Send + Sync>> = pool.install(|| {
+        blocks.into_par_iter().try_for_each(|points| {
             if interrupted.load(Ordering::Relaxed) {
                 return Ok(());
             }
-            let range = grid.chunk_range(index, size);
-            let points = range.len() as u64;
-            let chunk = solve_chunk((&document, &grid, &columns), (index, range), arguments.cold);
-            progress.inc(points);
-            journal.append(chunk)?;
-            Ok(())
+            let count = points.len() as u64;
+            let (rows, failures) = solve_block(&document, &grid, &header, points, arguments.cold);
+            progress.inc(count);
+            table.lock().unwrap_or_else(PoisonError::into_inner).append(rows, failures)
         })
     });
-    failed.map_err(|error| error as Box<dyn Error>)?;
+    solved.map_err(|error| error as Box<dyn Error>)?;
     progress.finish_and_clear();
 
-    let chunks = journal.chunks();
-    let done: usize = chunks.iter().map(|chunk| chunk.rows.len() + chunk.failures.len()).sum();
-    let record = report::Record {
-        threads: pool.current_num_threads(),
-        seconds: start.elapsed().as_secs_f64(),
-        complete: done == grid.len(),
-        columns,
-    };
-    report::write(&folder, &document, &grid, &chunks, &record)?;
-    if !record.complete {
+    let table = table.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let (threads, seconds) = (pool.current_num_threads(), start.elapsed().as_secs_f64());
+    report::write(&folder, (&document, &grid, &hash), &table, (threads, seconds))?;
+    if table.done() < grid.len() {
         return Err(format!(
-            "interrupted after {done} of {} points, kept in {}; the same command resumes",
+            "interrupted after {} of {} points, kept in {}; the same command resumes",
+            table.done(),
             grid.len(),
             folder.display()
         )
         .into());
     }
-    journal.remove()?;
-    let reused = resumed.min(grid.len());
-    let note = if reused > 0 { format!(" ({reused} resumed)") } else { String::new() };
+    let note = if resumed > 0 { format!(" ({resumed} resumed)") } else { String::new() };
     say(&format!(
-        "{} points{note} in {:.2} s on {} thread{}: {}\n",
+        "{} points{note} in {seconds:.2} s on {threads} thread{}: {}\n",
         grid.len(),
-        record.seconds,
-        record.threads,
-        if record.threads == 1 { "" } else { "s" },
+        if threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
     if first.is_ok_and(|first| first.run().is_some()) {
         say("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
     }
-    for key in report::idle_keys(&grid, &record.columns, &chunks) {
+    for warned in report::warnings(&table) {
+        let (name, title, points) = (warned.entry.name, warned.entry.title, warned.points);
         say(&format!(
-            "note: {key} changes no column: points that differ in it alone are the same\n"
+            "warning[{name}]: {title} ({points} of {} points, the first is point {})\n",
+            grid.len(),
+            warned.point
         ))?;
     }
-    for PointsWarned { code, text, point, points } in report::warnings(&chunks) {
-        let all = grid.len();
-        say(&format!("warning[{code}]: {text} (point {point}, {points} of {all} in all)\n"))?;
-    }
-    let failures: Vec<_> = chunks.iter().flat_map(|chunk| &chunk.failures).collect();
-    match failures.first() {
+    match table.failures.iter().next() {
         None => Ok(Outcome::Done),
-        Some(first) => Err(format!(
-            "{} of {} points have no solution (listed in {}), the first is point {}: {}",
-            failures.len(),
+        Some((point, message)) => Err(format!(
+            "{} of {} points have no solution (listed in {}), the first is point {point}: {message}",
+            table.failures.len(),
             grid.len(),
-            folder.join("sweep.json").display(),
-            first.point,
-            first.message
+            folder.join("sweep.json").display()
         )
         .into()),
     }
+}
+
+fn block_size(grid: &Grid, scene: Option<&AssemblyScene>) -> usize {
+    let bushings = grid.axes.iter().any(|axis| axis.key.contains(".bushing."));
+    let mut bodies = scene.iter().flat_map(|scene| &scene.bodies);
+    let meshed = bodies.any(|body| body.beam.as_ref().is_some_and(|of| of.beam.mesh.is_some()));
+    if bushings || meshed { SLOW_BLOCK } else { BLOCK }
 }
 
 /// Apart from the folder of a single solution, so that each holds one kind of results.
@@ -187,32 +168,29 @@ fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
     bar
 }
 
-fn solve_chunk(
-    (document, grid, header): (&Document, &Grid, &[Column]),
-    (index, range): (usize, Range<usize>),
+/// Rows of solved points, and messages of points without a solution.
+type Solved = (Vec<Vec<f64>>, Vec<(usize, String)>);
+
+fn solve_block(
+    document: &Document,
+    grid: &Grid,
+    header: &[Column],
+    points: Range<usize>,
     cold: bool,
-) -> Chunk {
-    let mut chunk = Chunk { index, rows: Vec::new(), failures: Vec::new(), warnings: Vec::new() };
+) -> Solved {
+    let (mut rows, mut failures) = (Vec::new(), Vec::new());
     let (mut neighbour, mut kept) = (None, Kept::default());
-    for point in range {
+    for point in points {
         match point::solve(document, grid, (point, header), neighbour.as_deref(), &mut kept) {
             Ok(solved) => {
-                chunk.rows.push(solved.row);
-                let warned = solved.warnings.into_iter().map(|Warning { code, text }| {
-                    PointsWarned { code: code.name().into(), text, point, points: 1 }
-                });
-                let mut here = Vec::new();
-                gather(&mut here, warned);
-                // Two bodies may have one code each: it is one point.
-                let once = here.into_iter().map(|warned| PointsWarned { points: 1, ..warned });
-                gather(&mut chunk.warnings, once);
+                rows.push(solved.row);
                 neighbour = if cold { None } else { solved.start_for_neighbour };
             }
             Err(message) => {
-                chunk.failures.push(journal::Failure { point, message });
+                failures.push((point, message));
                 neighbour = None;
             }
         }
     }
-    chunk
+    (rows, failures)
 }

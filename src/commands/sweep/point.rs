@@ -21,7 +21,6 @@ use std::error::Error;
 
 pub struct Solved {
     pub row: Vec<f64>,
-    pub warnings: Vec<Warning>,
     /// `None` where the position is one of many and a neighbour should look for its own.
     pub start_for_neighbour: Option<Vec<SVector<f64, 5>>>,
 }
@@ -41,9 +40,12 @@ pub fn solve(
                     sweep what has one kind of results by itself"
             .into());
     }
-    solve_scene(&scene, neighbour, kept)
-        .map(|solved| Solved { row: [start_of_row(grid, point), solved.row].concat(), ..solved })
-        .map_err(|error| error.to_string())
+    let solved = solve_scene(&scene, neighbour, kept).map_err(|error| error.to_string())?;
+    let row = [start_of_row(grid, point), solved.row].concat();
+    match row.iter().position(|value| !value.is_finite()) {
+        None => Ok(Solved { row, ..solved }),
+        Some(column) => Err(format!("{} is not finite", header[column].name)),
+    }
 }
 
 fn solve_scene(
@@ -74,7 +76,7 @@ fn solve_scene(
     };
     row.extend(of_housings);
     row.push(codes(&warnings));
-    Ok(Solved { row, warnings, start_for_neighbour })
+    Ok(Solved { row, start_for_neighbour })
 }
 
 /// Codes of warnings as one number, two digits each: 305 for W03 and W05. The first seven, which a number of a table holds exactly.
