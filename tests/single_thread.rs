@@ -86,11 +86,10 @@ fn a_sweep_runs_on_the_threads_it_was_given(path: &Path, folder: &Path) {
         }
         let mut child = bearing(&arguments, path, &out);
         let start = Instant::now();
-        // A second line in the journal: the workers are at it.
-        let journal = out.join("sweep.journal");
-        while fs::read(&journal).map_or(0, |text| text.iter().filter(|b| **b == b'\n').count()) < 2
-        {
-            assert!(start.elapsed() <= Duration::from_secs(60), "no journal");
+        // A row in the table: the workers are at it.
+        let csv = out.join("sweep.csv");
+        while fs::read(&csv).map_or(0, |text| text.iter().filter(|b| **b == b'\n').count()) < 2 {
+            assert!(start.elapsed() <= Duration::from_secs(60), "no rows");
             assert!(child.try_wait().unwrap().is_none(), "over too soon");
             std::thread::sleep(Duration::from_millis(1));
         }

@@ -1,4 +1,4 @@
-//! Groups of channels that a run records; what nobody asks for is not computed.
+//! Groups of channels of a run. Channels that are not requested are not computed.
 
 /// A group of columns of the time series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,7 +19,7 @@ pub enum ChannelGroup {
     Forces,
     /// Moment of contact forces on each race about its centre.
     Moments,
-    /// Energies, work and losses since the start, and what is unaccounted for.
+    /// Energies, work and losses since the start, and the energy residual.
     Energy,
 }
 
@@ -36,7 +36,7 @@ impl ChannelGroup {
         ChannelGroup::Energy,
     ];
 
-    /// All but the slip, six columns a ball, and moments: for those who ask.
+    /// All but slip, with six columns a ball, and moments.
     pub const DEFAULT: [ChannelGroup; 7] = [
         ChannelGroup::Races,
         ChannelGroup::Cage,
@@ -47,7 +47,7 @@ impl ChannelGroup {
         ChannelGroup::Energy,
     ];
 
-    /// As in a scene.
+    /// Name in scenes.
     pub const fn name(self) -> &'static str {
         match self {
             ChannelGroup::Races => "races",

@@ -1,37 +1,37 @@
-//! The energy ledger of a run, look by look: of a run with a solid in it at each row, of bearings alone whatever the rows are.
+//! Checks of the energy ledger of a run: at each row of a run with a solid, otherwise at intervals of its own.
 
-/// A ledger that does not close at this many looks on end fails a run. One alone may be a blow to a
-/// body at rest: what a step leaves of it is much of the little that has been turned over.
+/// Consecutive checks with an energy residual beyond the limit that end a run. A single one may be an impact on a body
+/// at rest, whose residual is large compared with the little energy turned over.
 pub const MOST_OPEN: u32 = 5;
 
-/// Energy that is nothing to any body of a scene, J: some hundred times what heat gives one atom at room temperature. What
-/// rounding makes of a system at rest, before its load comes, is far below.
+/// Energy below which nothing is checked, J: some hundred times the thermal energy of an atom at room temperature, far
+/// above rounding in a system at rest.
 const NOTHING: f64 = 1e-18;
 
-/// What the ledger has come to.
+/// State of the energy ledger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LedgerWatch {
-    /// Energy held less work done at the start, J: what the ledger of a solid by itself is held against.
+    /// Initial energy less work done, J: reference of the ledger of a solid alone.
     pub first: f64,
-    /// Largest energy held or exchanged so far, J: what is unaccounted for is measured by it.
+    /// Largest energy held or exchanged so far, J: reference of the residual.
     pub turned_over: f64,
-    /// Largest energy unaccounted for so far, J.
+    /// Largest energy residual so far, J.
     pub largest_residual: f64,
-    /// Looks on end at which it did not close.
+    /// Consecutive checks beyond the limit.
     pub open: u32,
 }
 
 impl LedgerWatch {
-    /// Looks where `residual` is unaccounted for and `turned_over` held or exchanged (J); false
-    /// where the run has to end, having missed more than `limit` of it for too long.
+    /// Records a check with `residual` and `turned_over` (J). Returns false if the run has to end: the residual has
+    /// exceeded `limit` of the energy turned over for too long.
     pub fn record(&mut self, residual: f64, turned_over: f64, limit: f64) -> bool {
         let closes = self.closes(residual, turned_over, limit);
         self.open = if closes { 0 } else { self.open.saturating_add(1) };
-        // A residual that is not a number is refused as well.
+        // NaN ends the run too.
         self.open < MOST_OPEN && residual.is_finite()
     }
 
-    /// Whether it closes at one look by itself.
+    /// Returns whether a single check is within the limit.
     pub fn closes(&mut self, residual: f64, turned_over: f64, limit: f64) -> bool {
         self.turned_over = self.turned_over.max(turned_over);
         self.largest_residual = self.largest_residual.max(residual.abs());

@@ -1,8 +1,8 @@
-//! What is simulated, as lists: rigid bodies, the bearings that join them, solids reduced to some shapes and the
-//! seats in them, shafts that bend, gravity.
+//! The lists of a simulation: rigid bodies, bearings, reduced solids and housing fits, flexible shafts, connections,
+//! gravity.
 //!
-//! A bearing takes hold of its two bodies at a place along each (a [`Mount`]); several may take hold of
-//! one body, as two bearings of a shaft do. The order of the lists is the order of every sum.
+//! A bearing has a [`Mount`] on each of its two bodies; several bearings may be on one body, as on a shaft. The order
+//! of the lists is the order of every sum.
 
 use crate::assembly::loads::{CageBody, Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation};
 use crate::assembly::mount::Mount;
@@ -29,51 +29,51 @@ use std::f64::consts::PI;
 pub struct Assembly {
     pub bodies: Vec<Body>,
     pub bearings: Vec<Bearing>,
-    /// Between bodies, besides the bearings.
+    /// Connections between bodies, without bearings.
     pub connections: Vec<Connection>,
     /// Flexible solids with inertia.
     pub solids: Vec<ReducedSolid>,
-    /// Rigid bodies in the bores of solids.
+    /// Races in the bores of solids.
     pub seats: Vec<Seat>,
-    /// Bodies that bend, at most one entry each.
+    /// Flexible bodies, at most one entry each.
     pub shafts: Vec<ElasticShaft>,
-    /// They watch a motion and change nothing of it.
+    /// Sensors do not change the motion.
     pub sensors: Vec<Sensor>,
     /// m/s².
     pub gravity: [f64; 3],
 }
 
-/// A rigid body with an axis of symmetry: a race, a shaft with all that sits on it, a cage.
+/// An axisymmetric rigid body: a race, a shaft with all that is mounted on it, a cage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// As messages name it: "the inner race".
+    /// Name in messages: "the inner race".
     pub name: String,
-    /// Before the names of its own columns; `None` for a race, whose columns are its bearing's.
+    /// Prefix of its own columns; `None` for a race, whose columns are its bearing's.
     pub label: Option<String>,
     pub mobility: Mobility,
-    /// Position x, y, z (m) and tilts (rad) at which springs to the ground are at rest.
+    /// Position x, y, z (m) and tilts (rad) at which springs to the ground are unloaded.
     pub rest: [f64; 5],
     pub rotating_load: Option<RotatingLoad>,
-    /// kg·m, at the body's spin angle.
+    /// kg·m, at the body's rotation angle.
     pub unbalance: f64,
 }
 
-/// Name of a body that stands for what does not move.
+/// Name of the fixed body that represents the ground.
 pub const GROUND: &str = "the ground";
 
-/// How a body may move.
+/// Mobility of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mobility {
-    /// Not at all: it stands at its rest position and has no equations.
+    /// Fixed at its rest position, without equations.
     Fixed,
-    /// Under loads and given motions of its coordinates.
+    /// Under loads and prescribed motions of its coordinates.
     Driven(Box<DrivenBody>),
     /// Under its contacts and its weight alone.
     Free(Inertia),
 }
 
 impl Body {
-    /// `None` where it is fixed.
+    /// `None` for a fixed body.
     pub fn inertia(&self) -> Option<&Inertia> {
         match &self.mobility {
             Mobility::Fixed => None,
@@ -100,7 +100,7 @@ impl Body {
         self.mobility != Mobility::Fixed
     }
 
-    /// Holds it where it rests. One that turns at a given speed goes on turning, since balls roll with it.
+    /// Fixes the body at its rest position. A prescribed speed stays, since balls roll with it.
     pub fn hold(&mut self) {
         let turns = given_speed(self, 0.0) != 0.0;
         match &mut self.mobility {
@@ -113,10 +113,10 @@ impl Body {
     }
 }
 
-/// Balls between two races, and perhaps a cage.
+/// Balls between two races, with or without a cage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bearing {
-    /// As messages name it; `None` where there is one only.
+    /// Name in messages; `None` for the only one.
     pub name: Option<String>,
     pub geometry: BearingGeometry,
     pub inner_contact: HertzContact,
@@ -133,13 +133,13 @@ pub struct Bearing {
     /// Points across each slice.
     pub points_across: usize,
     pub damping: ContactDamping,
-    /// Between neighbouring balls; `None` lets them pass into each other, which ends the run.
+    /// Contact between neighbouring balls; without it interpenetrating balls end the run.
     pub ball_contact: Option<BallContactLaw>,
-    /// In its races.
+    /// Dents in its races.
     pub dents: Vec<Dent>,
 }
 
-/// The body that keeps balls apart, and its contacts.
+/// A cage and its contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Caged {
     /// Index in [`Assembly::bodies`].
@@ -148,24 +148,24 @@ pub struct Caged {
 }
 
 impl Caged {
-    /// How far a ball may be off the middle of its pocket, m.
+    /// Largest displacement of a ball from the middle of its pocket, m.
     pub fn room(&self, bearing: &Bearing) -> f64 {
         self.contacts.pocket_radius - bearing.geometry.ball_radius
     }
 }
 
 impl Bearing {
-    /// "left_", before the names of columns; nothing where there is one only.
+    /// Prefix of column names: "left_"; empty for the only one.
     pub fn prefix(&self) -> String {
         self.name.as_ref().map_or(String::new(), |name| format!("{name}_"))
     }
 
-    /// " of bearing left", for messages; nothing where there is one only.
+    /// Suffix in messages: " of bearing left"; empty for the only one.
     pub fn suffix(&self) -> String {
         self.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"))
     }
 
-    /// Whether neighbouring balls can meet.
+    /// Returns whether neighbouring balls can meet.
     pub fn ball_meeting(&self) -> BallMeeting {
         if self.ball_contact.is_none() {
             return BallMeeting::NoLaw;
@@ -176,25 +176,25 @@ impl Bearing {
     }
 }
 
-/// Whether neighbouring balls can meet.
+/// Contact between neighbouring balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BallMeeting {
-    /// Their contact is part of every evaluation.
+    /// Tested in every evaluation.
     Tested,
-    /// No law is given for it.
+    /// Without a contact law.
     NoLaw,
-    /// The pockets keep them apart by at least `gap` (m).
+    /// Never: the pockets keep a gap (m).
     KeptApart { gap: f64 },
 }
 
-/// How far inside the pitch circle a ball may come for its pocket to keep it apart, in ball radii:
-/// more than the grooves leave it, by far.
+/// Largest displacement of a ball inside the pitch circle at which its pocket still keeps it apart, in ball radii; far
+/// more than the grooves allow.
 const INWARDS: f64 = 0.5;
 
-/// The gap (m) that the pockets of a cage keep between neighbouring balls; `None` where they may meet.
+/// Gap (m) that the pockets of a cage keep between neighbouring balls; `None` if balls may meet.
 ///
-/// Each ball stays on its side of the plane halfway between two pockets as long as it lies no deeper
-/// in its pocket's wall, and the cage no farther off the axis, than any run goes on with.
+/// Each ball stays on its side of the plane halfway between two pockets as long as its depth in the pocket and the
+/// displacement of the cage are within the limits of any run.
 pub fn gap_in_pockets(geometry: &BearingGeometry, cage: &CageContacts) -> Option<f64> {
     let radius = geometry.ball_radius;
     let aside = cage.pocket_radius - radius + HERTZ_SCALE * radius;
@@ -205,7 +205,7 @@ pub fn gap_in_pockets(geometry: &BearingGeometry, cage: &CageContacts) -> Option
 }
 
 impl DrivenBody {
-    /// Profiles of what is given, not loaded: coordinates and the speed.
+    /// Profiles of prescribed coordinates and of the speed.
     fn given(&self) -> impl Iterator<Item = &Profile> {
         let coordinates = self.drives.iter().filter_map(|drive| match drive {
             Drive::Motion(profile) => Some(profile),
@@ -241,18 +241,18 @@ impl DrivenBody {
 }
 
 impl Assembly {
-    /// Where a bearing sits along X, m: where its inner race does. What is said of its parts counts from there.
+    /// Position of a bearing along X, m: that of its inner race. Positions of its parts are relative to it.
     pub fn place_of(&self, bearing: &Bearing) -> f64 {
         let [inner, _] = &bearing.mounts;
         self.bodies[inner.body].rest[0] + inner.along
     }
 
-    /// From where X of a body counts, m: a race that is a body of its own from its bearing's place, as all of it.
+    /// Origin of X of a body, m: for a race that is a body of its own, its bearing's position.
     pub fn origin_of(&self, body: usize) -> f64 {
         let sits = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
         match self.bearings.iter().find(sits) {
             Some(bearing) if self.bodies[body].label.is_none() => self.place_of(bearing),
-            // One that bends stands where its mass has its centre.
+            // A flexible body has the position of its centre of mass.
             _ if self.shafts.iter().any(|shaft| shaft.body == body) => self.bodies[body].rest[0],
             _ => 0.0,
         }
@@ -266,19 +266,19 @@ impl Assembly {
         self.bodies.iter().filter_map(|body| body.rotating_load.as_ref())
     }
 
-    /// Loads on solids, and radii of races in their seats.
+    /// Loads on solids, and radii of races in their bores.
     fn of_solids(&self) -> impl Iterator<Item = &Profile> {
         let loads = self.solids.iter().flat_map(|solid| &solid.loads).map(|load| &load.profile);
         loads.chain(self.seats.iter().map(|seat| &seat.radius))
     }
 
-    /// Loads at places along shafts.
+    /// Loads along shafts.
     fn on_shafts(&self) -> impl Iterator<Item = &Profile> {
         self.shafts.iter().flat_map(|shaft| &shaft.loads).flat_map(|load| &load.force)
     }
 
-    /// Times after t = 0 at which a load or a given motion has a corner, in order, each once: no
-    /// step should cross them.
+    /// Times after t = 0 of corners in loads and prescribed motions, ascending, without duplicates: no step should
+    /// cross one.
     pub fn corners(&self) -> Vec<f64> {
         let turning = self.rotating_loads().flat_map(|load| [&load.force, &load.speed]);
         let profiles = self.driven().flat_map(|race| race.loads().chain(race.given()));
@@ -290,7 +290,7 @@ impl Assembly {
         corners
     }
 
-    /// The same with loads and given motions as they are from `t0` (s) on.
+    /// The assembly with loads and prescribed motions from `t0` (s) on.
     pub fn from_time(&self, t0: f64) -> Assembly {
         let mut later = self.clone();
         for body in &mut later.bodies {
@@ -317,8 +317,8 @@ impl Assembly {
         later
     }
 
-    /// The same with every body that sits in a solid held where it rests, and no solid: what is left to find an
-    /// equilibrium of.
+    /// The assembly without solids, with every body in a solid fixed at its rest position: the part whose equilibrium
+    /// is searched.
     pub fn with_seats_held(&self) -> Assembly {
         let mut held = self.clone();
         for seat in held.seats.drain(..) {
@@ -328,14 +328,14 @@ impl Assembly {
         held
     }
 
-    /// Whether a given motion has a corner at `time`, so that velocities may jump.
+    /// Returns whether a prescribed motion has a corner at `time`, so that velocities may jump.
     pub fn jolts_at(&self, time: f64) -> bool {
         let mut given = self.driven().flat_map(DrivenBody::given);
         given.any(|profile| profile.corners().contains(&time))
     }
 }
 
-/// Bodies of a bearing alone, in this order.
+/// Indices of the bodies of a bearing alone.
 pub const INNER: usize = 0;
 pub const OUTER: usize = 1;
 pub const CAGE: usize = 2;

@@ -1,4 +1,4 @@
-//! Loads and given motions of bodies, and a bearing alone as plain data.
+//! Loads and prescribed motions of bodies, and a bearing alone as plain data.
 
 use crate::assembly::lists::{Assembly, INNER};
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
@@ -16,7 +16,7 @@ use crate::kinematics::euler::quaternion;
 use crate::numeric::profile::Profile;
 use nalgebra::Vector3;
 
-/// One degree of freedom of a race: driven by a load, or its motion given.
+/// One degree of freedom of a race, with a load or a prescribed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// Force (N) or moment (N·m).
@@ -100,9 +100,9 @@ pub struct DynamicProblem {
     /// Points across each slice.
     pub points_across: usize,
     pub damping: ContactDamping,
-    /// Between neighbouring balls; `None` lets them pass into each other, which ends the run.
+    /// Contact between neighbouring balls; without it interpenetrating balls end the run.
     pub ball_contact: Option<BallContactLaw>,
-    /// In its races.
+    /// Dents in its races.
     pub dents: Vec<Dent>,
     /// m/s².
     pub gravity: [f64; 3],
@@ -112,13 +112,13 @@ pub struct DynamicProblem {
 }
 
 impl DynamicProblem {
-    /// The same as lists of bodies and bearings.
+    /// The bearing as lists of bodies and bearings.
     pub fn assembly(&self) -> Assembly {
         Assembly::from(self)
     }
 
-    /// The bearing at time `t` with its outer race held where it starts; a rotating load stands still where it
-    /// is then, an unbalance is left out.
+    /// The bearing at time `t` with its outer race fixed at its start; a rotating load has its present direction,
+    /// unbalance is omitted.
     pub fn statics(&self, t: f64) -> StaticProblem {
         let assembly = self.assembly();
         let [x, y, z, xi, lambda] = self.outer_start;

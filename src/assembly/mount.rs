@@ -1,13 +1,13 @@
-//! Where a connection takes hold of a rigid body.
+//! Attachment of a bearing or connection to a rigid body.
 
-/// A place along the axis of a body, and which way it faces.
+/// A position along the axis of a body, and a direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mount {
     /// Index of the body in its assembly.
     pub body: usize,
-    /// Distance of the place from the body's centre along the body's axis, m.
+    /// Distance from the body's centre along its axis, m.
     pub along: f64,
-    /// Whether the axis of what sits there points along the body's −X: put in the other way round.
+    /// True if the attached axis is along the body's −X (mounted reversed).
     pub reversed: bool,
 }
 
@@ -16,7 +16,7 @@ impl Mount {
         Mount { body, ..Mount::default() }
     }
 
-    /// Whether what sits there and the body share centre and axes.
+    /// Returns whether attachment and body have the same centre and axes.
     pub fn is_direct(&self) -> bool {
         self.along == 0.0 && !self.reversed
     }

@@ -1,8 +1,8 @@
-//! Layout of the state vector: one flat array, so that integrators, error control and restart see
-//! plain numbers.
+//! Layout of the state vector: one flat array of plain numbers for integrators, error control and restart.
 //!
-//! The balls of each bearing lie component by component (all x, all y, …), padded to whole lanes; bodies
-//! (races, cages, shafts) follow one by one; then the shapes of each reduced solid, how far and how fast; then how
+//! The balls of each bearing come first, component by component (all x, all y, …), padded to whole lanes. Bodies
+//! (races, cages, shafts) follow one by one, then the modal coordinates and rates of each reduced solid, the
+//! elongations of Maxwell elements, flexible shafts, and the energy ledger.
 //! far the springs of Maxwell elements are stretched; the energy ledger comes last.
 
 use crate::assembly::lists::Assembly;
@@ -12,7 +12,7 @@ use crate::members::flexible_shaft::ElasticShaft;
 use crate::members::reduced_solid::ReducedSolid;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Where bodies, solids and ledger are in the state vector.
+/// Positions of bodies, solids and ledger in the state vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Places {
     first_body: usize,
@@ -21,11 +21,11 @@ pub struct Places {
     of_solids: usize,
     /// Entries of all Maxwell elements of connections.
     of_connections: usize,
-    /// Entries of all shafts that bend.
+    /// Entries of all flexible shafts.
     of_shafts: usize,
 }
 
-/// Entries that a connection has in the state: six for each Maxwell element.
+/// Number of entries of a connection: six for each Maxwell element.
 fn connection_entries(connection: &Connection) -> usize {
     6 * connection.maxwell().len()
 }
@@ -42,7 +42,7 @@ impl Places {
         }
     }
 
-    /// First entries of each reduced solid: so many shapes how far (m), then as many how fast (m/s).
+    /// First entries of each reduced solid: modal coordinates (m), then as many rates (m/s).
     pub fn solids(&self, assembly: &Assembly) -> Vec<usize> {
         let mut next = self.body(self.bodies);
         let mut first = |solid: &ReducedSolid| {
@@ -53,7 +53,7 @@ impl Places {
         assembly.solids.iter().map(&mut first).collect()
     }
 
-    /// First entries of each connection's Maxwell elements: six elongations (m, rad) of each.
+    /// First entries of each connection's Maxwell elements: six elongations (m, rad) each.
     pub fn connections(&self, assembly: &Assembly) -> Vec<usize> {
         let mut next = self.body(self.bodies) + self.of_solids;
         let mut first = |connection: &Connection| {
@@ -64,7 +64,7 @@ impl Places {
         assembly.connections.iter().map(&mut first).collect()
     }
 
-    /// First entries of each shaft that bends, see [`ElasticShaft::entries`].
+    /// First entries of each flexible shaft, see [`ElasticShaft::entries`].
     pub fn shafts(&self, assembly: &Assembly) -> Vec<usize> {
         let mut next = self.body(self.bodies) + self.of_solids + self.of_connections;
         let mut first = |shaft: &ElasticShaft| {
@@ -88,13 +88,13 @@ impl Places {
         self.ledger() + entry as usize
     }
 
-    /// Entries of the whole state.
+    /// Number of entries of the state.
     pub fn state_len(&self) -> usize {
         self.ledger() + LEDGER
     }
 }
 
-/// Lanes that the contact loops run over.
+/// Width of the contact loops.
 pub const LANES: usize = 8;
 
 /// Position 3, quaternion 4 (scalar first), velocity 3, spin 3 (inertial axes).
@@ -110,39 +110,38 @@ pub enum Ledger {
     Traction,
     ContactDamping,
     CageFriction,
-    /// Dashpots to the ground, between bodies and of reduced solids, or all that a housing in explicit steps does
-    /// to the outer race.
+    /// Dashpots to the ground, between bodies and of reduced solids, or all work of a housing in explicit steps on the
+    /// outer race.
     Foundation,
-    /// Loads, given motions, and races that grow in their seats.
+    /// Loads, prescribed motions, and growing race radii.
     Drives,
     BallFriction,
 }
 
 pub const LEDGER: usize = 6;
 
-/// Where a bearing's balls and bodies are in the state vector: the balls of all bearings come first, then the
-/// bodies, then the ledger.
+/// Positions of a bearing's balls and bodies in the state vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     pub balls: usize,
-    /// Balls rounded up to whole lanes; the extra ones stand still and touch nothing.
+    /// Balls rounded up to whole lanes; the extra ones do not move and touch nothing.
     pub padded: usize,
     pub has_cage: bool,
-    /// First entries of the balls, the bodies of both races, the cage (the ledger's if
-    /// there is none) and the ledger.
+    /// First entries of the balls, the bodies of both races, the cage (that of the ledger if there is none) and the
+    /// ledger.
     first: usize,
     races: [usize; 2],
     cage: usize,
     ledger: usize,
 }
 
-/// Entries that a bearing's balls take.
+/// Number of entries of a bearing's balls.
 fn ball_entries(balls: usize) -> usize {
     BODY * balls.next_multiple_of(LANES)
 }
 
 impl Layout {
-    /// Of a bearing alone.
+    /// Layout of a bearing alone.
     pub fn new(balls: usize, has_cage: bool) -> Layout {
         let inner = ball_entries(balls);
         let (outer, cage) = (inner + BODY, inner + 2 * BODY);
@@ -157,7 +156,7 @@ impl Layout {
         }
     }
 
-    /// Of each bearing of an assembly.
+    /// Layouts of the bearings of an assembly.
     pub fn of(assembly: &Assembly) -> Vec<Layout> {
         let places = Places::of(assembly);
         let mut first = 0;
@@ -179,7 +178,7 @@ impl Layout {
         layouts
     }
 
-    /// Of the whole state.
+    /// Number of entries of the state.
     pub fn len(&self) -> usize {
         self.ledger() + LEDGER
     }
@@ -209,7 +208,7 @@ impl Layout {
         self.races[1]
     }
 
-    /// The cage's 13 entries, if there is one.
+    /// First of the cage's 13 entries, if there is one.
     pub fn cage(&self) -> usize {
         self.cage
     }
@@ -242,7 +241,7 @@ impl Layout {
     }
 }
 
-/// One body out of the state vector.
+/// State of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
     /// m.
@@ -265,9 +264,8 @@ impl BodyState {
         }
     }
 
-    /// The body whose 13 entries these are. Stages of Runge–Kutta leave the unit quaternions by the
-    /// square of the angle turned; the axis of a race must not get longer by that, since it carries
-    /// overlaps of micrometres.
+    /// The body of these 13 entries. Stages of Runge–Kutta change the norm of quaternions by the square of the angle;
+    /// it is restored, since the length of a race's axis scales overlaps of micrometres.
     pub fn from_slice(entries: &[f64]) -> BodyState {
         let vector = |at: usize| [entries[at], entries[at + 1], entries[at + 2]];
         let q = &entries[ORIENTATION..ORIENTATION + 4];

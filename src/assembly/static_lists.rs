@@ -1,4 +1,4 @@
-//! What is in equilibrium: bodies that are held or loaded, and the bearings between them.
+//! The lists of an equilibrium: fixed or loaded bodies, and the bearings between them.
 
 use crate::assembly::mount::Mount;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
@@ -20,28 +20,28 @@ use nalgebra::Vector3;
 pub struct StaticAssembly<'b> {
     pub bodies: Vec<StaticBody>,
     pub bearings: Vec<StaticBearing>,
-    /// Their dashpots are at rest.
+    /// Dashpots have no force.
     pub connections: Vec<Connection>,
     pub seats: Vec<StaticSeat<'b>>,
     pub shafts: Vec<StaticShaft>,
 }
 
-/// Bending and stretching of a body: the amplitudes of its shapes are looked for beside its coordinates. What takes hold
-/// of it does so at [`Place::Section`]s.
+/// Bending and stretching of a body: the amplitudes of its modes are unknowns in addition to its coordinates.
+/// Attachments on it are at [`Place::Section`]s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticShaft {
-    /// Whose straight axis the shapes count from; its tilts turn e₂ and e₃ along.
+    /// The body whose straight axis is the reference of the modes; its tilts rotate e₂ and e₃.
     pub body: usize,
-    /// Squares of their frequencies along e₂, e₃, and of those along the axis, 1/s²: N/m for a modal mass of 1 kg.
+    /// Squared frequencies along e₂ and e₃, then along the axis, 1/s²: N/m for a modal mass of 1 kg.
     pub springs: Vec<f64>,
-    /// Where the search begins; unbent where it is empty.
+    /// Start of the search; empty for a straight shaft.
     pub start: Vec<f64>,
-    /// Along the amplitudes, N; none where it is empty.
+    /// Modal loads, N; empty for none.
     pub loads: Vec<f64>,
 }
 
 impl StaticShaft {
-    /// Of a body with these shapes.
+    /// The shaft of a body with these modes.
     pub fn new(body: usize, shapes: &ShaftShapes) -> StaticShaft {
         let ShaftShapes { frequencies, stretch_frequencies, .. } = shapes;
         let all = frequencies.iter().chain(frequencies).chain(stretch_frequencies);
@@ -50,18 +50,18 @@ impl StaticShaft {
     }
 }
 
-/// A section of a body that bends: its five coordinates follow from the body's and the shapes'.
+/// A section of a flexible body; its five coordinates follow from the body and the modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticSection {
     /// Index in [`StaticAssembly::shafts`].
     pub shaft: usize,
     pub section: Section,
-    /// Along its coordinates, N and N·m.
+    /// Loads along its coordinates, N and N·m.
     pub loads: [f64; 5],
 }
 
 impl StaticAssembly<'_> {
-    /// Where what is mounted on a body takes hold: on a section that was made for it, if the body bends.
+    /// Attachment of a mount: on its section if the body is flexible.
     pub fn hold_of(&self, mount: &Mount) -> Mount {
         let is_there = |body: &StaticBody| match &body.place {
             Place::Section(of) => {
@@ -79,77 +79,78 @@ impl StaticAssembly<'_> {
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticBody {
-    /// As messages name it.
+    /// Name in messages.
     pub name: String,
     pub place: Place,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// It stands there, whatever pulls at it.
+    /// Fixed at this pose.
     Held(Pose),
-    /// Its coordinates x, y, z (m), tilt_y, tilt_z (rad) are looked for, or given one by one.
+    /// x, y, z (m), tilt_y, tilt_z (rad) are unknown or prescribed one by one.
     Loaded(Loaded),
-    /// Part of a body that bends.
+    /// Part of a flexible body.
     Section(Box<StaticSection>),
 }
 
 /// A body with five coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// What the coordinates count from, in the assembly's frame: a body at zero stands there, and its
-    /// displacements, tilts and loads are along and about these axes. [`None`] is the frame itself.
+    /// Reference pose of the coordinates in the assembly's frame; displacements, tilts and loads are along and about
+    /// its axes. `None` for the frame itself.
     pub axes: Option<Box<Pose>>,
     pub conditions: [Condition; 5],
-    /// Springs to the ground, N/m and N·m/rad, and where they are at rest.
+    /// Springs to the ground, N/m and N·m/rad, and their unloaded position.
     pub springs: [f64; 5],
     pub rest: [f64; 5],
-    /// Where the search begins; [`None`] leaves it to an estimate for a bearing alone.
+    /// Start of the search; `None`: an estimate for a bearing alone.
     pub start: Option<[f64; 5]>,
-    /// How far a coordinate that is free may go from there, m (tilts over the pitch radius); a body in a bore
-    /// is lost when it is beyond that.
+    /// Largest distance of a free coordinate from the start, m (tilts times the pitch radius), beyond which a body in a
+    /// bore is lost.
     pub room: f64,
 }
 
 /// Balls between two races.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticBearing {
-    /// As messages name it; `None` where there is one only.
+    /// Name in messages; `None` for the only one.
     pub name: Option<String>,
     pub geometry: BearingGeometry,
     pub inner_contact: HertzContact,
     pub outer_contact: HertzContact,
     /// Inner race, outer race.
     pub mounts: [Mount; 2],
-    /// Of each ball in the outer race's frame, from +Y towards +Z, rad: [`BearingGeometry::azimuths`] where they are evenly spaced.
+    /// Azimuth of each ball in the outer race's frame, from +Y towards +Z, rad; [`BearingGeometry::azimuths`] for even
+    /// spacing.
     pub azimuths: Vec<f64>,
-    /// Of each ball, N.
+    /// Weight of a ball, N.
     pub weight: Vector3<f64>,
     /// Centrifugal force on a ball per distance from the axis, N/m.
     pub centrifugal: f64,
 }
 
-/// A race in the bore of a flexible solid that is held.
+/// A race in the bore of a fixed flexible solid.
 ///
-/// The solid is this seat's own: the same bore given to two seats means two equal solids. A solid with two
-/// bores that two races load has no place in these lists, since each bore is condensed as if it were the only one.
+/// Each housing fit has a solid of its own: each bore is condensed as if it were the only one. A solid with two loaded
+/// bores cannot be represented.
 #[derive(Clone, Debug)]
 pub struct StaticSeat<'b> {
-    /// As messages name it; `None` where there is one only.
+    /// Name in messages; `None` for the only one.
     pub name: Option<String>,
-    /// Where on a body the race sits.
+    /// Position of the race on a body.
     pub mount: Mount,
-    /// Where the race's motion is measured from, in the assembly's frame: there it stands in the bore as
-    /// [`crate::solids::condensation::Reach::nominal`] says.
+    /// Reference pose of the race's motion in the assembly's frame, at which its position in the bore is
+    /// [`crate::solids::condensation::Reach::nominal`].
     pub nominal: Pose,
     pub bore: &'b CondensedBore,
     pub penalty: Penalty,
-    /// The race's radius. Nothing of the bore holds the race along its axis: that is for its body's conditions to do.
+    /// Fit of the race. The bore does not hold the race along its axis: the conditions of its body do.
     pub fit: Fit,
 }
 
 impl StaticSeat<'_> {
-    /// " of bearing left", for messages; nothing where there is one only.
+    /// Suffix in messages: " of bearing left"; empty for the only one.
     pub fn suffix(&self) -> String {
         self.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"))
     }
@@ -160,19 +161,19 @@ impl StaticBearing {
         ball_contacts(&self.geometry, &self.inner_contact, &self.outer_contact)
     }
 
-    /// " of bearing left", for messages; nothing where there is one only.
+    /// Suffix in messages: " of bearing left"; empty for the only one.
     pub fn suffix(&self) -> String {
         self.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"))
     }
 }
 
 impl Loaded {
-    /// What its coordinates count from.
+    /// Reference pose of its coordinates.
     pub fn axes(&self) -> Pose {
         self.axes.as_deref().copied().unwrap_or(Pose::identity())
     }
 
-    /// Value of coordinate `i` where it is given.
+    /// Prescribed value of coordinate `i`.
     pub fn given(&self, i: usize) -> Option<f64> {
         match self.conditions[i] {
             Condition::Displacement(value) => Some(value),

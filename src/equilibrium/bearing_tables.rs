@@ -1,4 +1,4 @@
-//! What a solution says of each bearing, ball by ball.
+//! Results of each bearing in an equilibrium, ball by ball.
 
 use crate::assembly::static_lists::StaticBearing;
 use crate::ch2_housing::bearing::contact::MeridianContact;
@@ -50,7 +50,7 @@ fn ball_state(
     settled: Option<&SettledBall>,
 ) -> BallState {
     let contacts = &of.contacts;
-    // An unloaded ball may be anywhere in its room; it is shown in the middle of it.
+    // An unloaded ball may be anywhere in its free play; it is shown in the middle.
     let in_plane = match settled {
         Some(ball) => ball.position,
         None => middle_of_room(of, plane, race),

@@ -1,4 +1,4 @@
-//! Why there is no equilibrium.
+//! Errors of the equilibrium search.
 
 use crate::solids::bore_equilibrium::BoreError;
 use thiserror::Error;
@@ -16,12 +16,12 @@ pub enum StaticsError {
     )]
     NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
     #[error(
-        "the damping inside {body} (internal_damping) drags it at this speed as hard as it springs back: rounds over its pull do not \
+        "internal damping of {body} (internal_damping) drags it at this speed as hard as it springs back: the iteration over its force does not \
          settle; take less of it, a lower speed at the start, or start in nominal positions (numerics.start = \"nominal\")"
     )]
     Dragged { body: String },
     #[error(
-        "the unbalance on {body} tilts it so far that the direction of its own pull changes: rounds over that do not settle; take \
+        "the unbalance on {body} tilts it so far that the direction of its own force changes: the iteration does not converge; take \
          less of it, a lower speed at the start, or stiffer supports, or start in nominal positions \
          (numerics.start = \"nominal\")"
     )]
@@ -58,7 +58,7 @@ pub enum StaticsError {
     Seat { of: String, source: BoreError },
 }
 
-/// A length in the place of a displacement is a frequent slip.
+/// A length instead of a displacement is a frequent slip.
 fn no_hold(coordinate: &str) -> String {
     let (kind, unit) =
         if coordinate.starts_with("tilt") { ("tilt", "deg") } else { ("displacement", "mm") };

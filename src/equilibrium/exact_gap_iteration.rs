@@ -1,8 +1,8 @@
-//! Equilibria in which nodes of bores are as far from their races as the steps of a motion have them.
+//! Equilibria with the exact gaps between bore nodes and races that the steps of a motion have.
 //!
-//! A condensed bore moves along normals that stay, and a race that goes across them comes no nearer to its nodes: by δ²/2r for a way δ,
-//! some nanometres, of the some ten by which a node is pressed in. A motion that started there would begin with a blow. What is left out
-//! depends little on the loads, so that it is taken from one equilibrium for the next until nothing changes.
+//! The nodes of a condensed bore move along fixed normals, which neglects the change of gap by a lateral displacement
+//! δ, δ²/2r: some nanometres, for penetrations of some ten. A motion that started there would begin with an impact.
+//! This part depends little on the loads, so that it is taken from one equilibrium to the next until it converges.
 
 use crate::assembly::static_lists::StaticAssembly;
 use crate::equilibrium::statics::{
@@ -10,17 +10,18 @@ use crate::equilibrium::statics::{
 };
 use crate::solids::bore_equilibrium::{BoreError, BoreSearch, BoreState};
 
-/// What a round may change of a distance, as a part of the deepest penetration of the bore.
+/// Largest change of a gap in the last iteration, as a fraction of the deepest penetration.
 const SETTLED: f64 = 1e-7;
-/// Distances that rounding of places cannot tell, m.
+/// Rounding of gaps, m.
 const ROUNDING: f64 = 1e-16;
 const ROUNDS: usize = 25;
 
-/// Equilibrium of `still`, where `beyond` says of the nodes of each seat's bore how far they are from the race beyond what normals that
-/// stay make it, m ([`crate::solids::condensation::beyond_normals`]).
+/// Equilibrium of `still`; `beyond` returns the part of each node's gap beyond that along fixed normals, m
+/// ([`crate::solids::condensation::beyond_normals`]).
 ///
 /// # Errors
-/// No equilibrium; distances that do not settle.
+///
+/// No equilibrium; gaps that do not converge.
 pub fn solve_with_true_distances<'b>(
     still: &StaticAssembly<'b>,
     beyond: impl Fn(usize, &BoreState) -> Vec<f64>,

@@ -1,6 +1,5 @@
-//! Loads on what stands still that follow the place they act at: an unbalance, the traction that holds rolling balls in
-//! their orbits, damping inside a bent shaft that spins. They are taken as they are at the last place found until they
-//! change no more.
+//! Loads in an equilibrium that depend on the position: unbalance, traction on orbiting balls, internal damping of a
+//! bent spinning shaft. They are evaluated at the last position found until they converge.
 
 use crate::assembly::lists::{Assembly, Bearing, Body};
 use crate::assembly::static_lists::{Place, StaticAssembly, StaticBearing};
@@ -14,38 +13,39 @@ use nalgebra::{SVector, Vector3};
 
 type Five = SVector<f64, 5>;
 
-/// Rounds of loads that follow the place they act at, and with damping inside shafts, whose pull may be a good part of what bends
-/// them.
+/// Largest number of iterations with follower loads, and with internal damping, whose force may be comparable with the
+/// load.
 const ROUNDS: usize = 20;
 const DRAGGED_ROUNDS: usize = 60;
 
-/// Change of tilts between two rounds, rad, that is no more than their rounding.
+/// Change of tilts in an iteration within their rounding, rad.
 const STILL: f64 = 1e-14;
-/// And, at the end of all rounds, no more than an equilibrium may leave open: the pull of an unbalance is off by this part of
-/// itself, less than any run is stepped for and more than rounding does to tilts that hardly anything holds.
+/// Relative error of an unbalance force accepted at the end of all iterations: less than the accuracy of any run, more
+/// than the rounding of tilts with little stiffness.
 const CLOSE: f64 = 1e-9;
 
-/// Loads that follow, as they are at the last place found.
+/// Follower loads at the last position found.
 ///
-/// An unbalance follows the race's tilts, by at most tilt · F/(k R) of what they were before;
-/// traction that holds balls in their orbit changes by its own shift over the pitch radius; what damping inside drags a shaft
-/// by is a part cΩ/ω² of what bends it.
+/// An unbalance rotates with the race's tilts and changes by at most tilt · F/(k R) of the previous change; traction on
+/// orbiting balls changes by its own displacement over the pitch radius; internal damping is a part cΩ/ω² of the
+/// bending load.
 pub(crate) struct FollowerLoadRounds<'a> {
     assembly: &'a Assembly,
     t: f64,
     extra: FollowerLoads,
-    /// Of each static body: whether an unbalance acts on it, its coordinates in the last round and in the one before.
+    /// For each static body: whether an unbalance acts on it, its coordinates in the last iteration and in the one
+    /// before.
     follows: Vec<bool>,
     tilts: Vec<Five>,
     before: Option<Vec<Five>>,
-    /// Of each shaft: what damping inside pushes its amplitudes with, N.
+    /// Modal forces of internal damping of each shaft, N.
     dragged: Vec<Vec<f64>>,
-    /// Of the last round, if it keeps an equilibrium from being known.
+    /// Error of the last iteration.
     unsettled: Option<StaticsError>,
 }
 
 impl<'a> FollowerLoadRounds<'a> {
-    /// Before the first round, with static bodies at these coordinates.
+    /// Before the first iteration, with static bodies at these coordinates.
     pub fn new(
         assembly: &'a Assembly,
         plain: &StaticAssembly,
@@ -70,18 +70,18 @@ impl<'a> FollowerLoadRounds<'a> {
         }
     }
 
-    /// How many rounds may be made.
+    /// Largest number of iterations.
     pub fn rounds(&self) -> usize {
         let drags = self.assembly.shafts.iter().any(|shaft| shaft.internal_damping != 0.0);
         if drags { DRAGGED_ROUNDS } else { ROUNDS }
     }
 
-    /// What did not settle in the last round, where that is more than rounding.
+    /// Error of the last iteration, if larger than rounding.
     pub fn unsettled(self) -> Option<StaticsError> {
         self.unsettled
     }
 
-    /// The lists without these loads, and with them.
+    /// The lists with these loads.
     pub fn loaded<'s>(&self, plain: &StaticAssembly<'s>) -> StaticAssembly<'s> {
         let mut loaded = plain.clone();
         for (shaft, dragged) in loaded.shafts.iter_mut().zip(&self.dragged) {
@@ -111,7 +111,7 @@ impl<'a> FollowerLoadRounds<'a> {
         loaded
     }
 
-    /// Takes all loads to the place found; whether none has changed by more than `tolerance` of what it is measured by.
+    /// Evaluates all loads at the position found; returns whether they have converged to `tolerance`.
     pub fn follow(
         &mut self,
         plain: &StaticAssembly,
@@ -120,7 +120,7 @@ impl<'a> FollowerLoadRounds<'a> {
     ) -> bool {
         self.unsettled = None;
         let next = FollowerLoads::of(self.assembly, plain, self.t, found);
-        // Below what statics itself leaves over.
+        // Below the tolerance of statics itself.
         let orbits = next.differs(&self.extra) <= tolerance * largest_load(&found.bearings);
         self.extra = next;
         let drags = self.follow_drags(plain, found, tolerance);
@@ -128,7 +128,7 @@ impl<'a> FollowerLoadRounds<'a> {
         orbits && drags && unbalances
     }
 
-    /// Damping inside shafts: against what bends them.
+    /// Internal damping of shafts, compared with the bending load.
     fn follow_drags(
         &mut self,
         plain: &StaticAssembly,
@@ -156,8 +156,7 @@ impl<'a> FollowerLoadRounds<'a> {
         self.unsettled.is_none()
     }
 
-    /// Unbalances: their force turns by as much as the tilts of what they act on change, to the rounding of those, or to and
-    /// fro by rounding.
+    /// Unbalance: its force rotates with the tilts, which converge to their rounding or alternate by it.
     fn follow_unbalances(&mut self, plain: &StaticAssembly, now: &[Five]) -> bool {
         if !self.follows.contains(&true) {
             return true;
@@ -203,11 +202,11 @@ fn largest_load(bearings: &[BearingState]) -> f64 {
 /// Largest slip of rolling contacts over their rolling speed.
 const CREEP: f64 = 0.01;
 
-/// Loads on bodies besides those that are given, conjugate to their coordinates.
+/// Additional loads on bodies, conjugate to their coordinates.
 ///
-/// Normal loads, whose lines do not quite meet, and weight push a ball along its orbit. Statics
-/// holds it there, on the outer race; in a bearing that rolls steadily traction does, half of it at each race so
-/// that the ball's spin stays as it is, and as far as a slip of [`CREEP`] gives that much. Nothing
+/// Normal loads, whose lines do not quite meet, and weight push a ball along its orbit. Statics lets the cage hold it
+/// there, on the outer race. In a steadily rolling bearing traction does, half of it at each race so that the ball's
+/// spin is constant, up to the traction of a slip of [`CREEP`]. Balls of a bearing at rest are not held.
 /// holds the balls of one that does not roll.
 #[derive(Clone, Debug)]
 struct FollowerLoads {
@@ -242,7 +241,7 @@ impl FollowerLoads {
                 let (sin, cos) = libm::sincos(ball.azimuth);
                 let around = orientation * Vector3::new(0.0, -sin, cos);
                 if moves {
-                    // What statics has put on the outer race in the cage's place.
+                    // The cage force of statics on the outer race.
                     let by_cage = around * ball.cage_force;
                     extra.add(solution, mounts[1].body, &ball.position, &by_cage);
                 }
@@ -283,7 +282,7 @@ impl FollowerLoads {
     }
 }
 
-/// Of a bearing's outer race, as its body's coordinates have it.
+/// Orientation of a bearing's outer race from its body's coordinates.
 fn outer_orientation(
     assembly: &Assembly,
     bearing: &Bearing,

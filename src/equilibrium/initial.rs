@@ -1,7 +1,7 @@
-//! Where bodies and balls of an assembly stand still: the place that a motion starts from and settles into.
+//! Equilibrium of the bodies and balls of an assembly: the start of a motion.
 //!
-//! One search over the coordinates of all bodies ([`solve_assembly`]), again and again where loads follow the place they
-//! act at (`FollowerLoadRounds`).
+//! One search over the coordinates of all bodies ([`solve_assembly`]), repeated for follower loads
+//! (`FollowerLoadRounds`).
 
 use crate::assembly::lists::{Assembly, Bearing, Body};
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};
@@ -20,7 +20,7 @@ use nalgebra::{SVector, Vector3};
 
 type Five = SVector<f64, 5>;
 
-/// Where all bodies and the balls stand still, in the world.
+/// Positions of all bodies and balls in equilibrium, in the world.
 pub type Equilibrium = AssemblySolution;
 
 impl Equilibrium {
@@ -31,21 +31,22 @@ impl Equilibrium {
     }
 }
 
-/// Equilibrium under the loads at t = 0. Forces that turn stand still in the direction that they
-/// have then: the rotating load at its phase, an unbalance along its body's own Y. Balls that
-/// roll are held in their orbit by traction, where there is any.
+/// Equilibrium under the loads at t = 0. Rotating forces have their direction at that time: the rotating load its
+/// phase, an unbalance the body's own Y. Traction, if there is any, holds rolling balls in their orbit.
 ///
 /// # Errors
-/// When the loads have no equilibrium.
+///
+/// No equilibrium.
 pub fn at_start(assembly: &Assembly) -> Result<Equilibrium, StaticsError> {
     at(assembly, 0.0, &[], None)
 }
 
-/// The same under the loads at `t`, the balls of each bearing moved on by `turned` (rad; none where it is
-/// empty), looked for `near` one that is known.
+/// Equilibrium under the loads at `t`, with the balls of each bearing advanced by `turned` (rad; empty for none),
+/// searched from a known one `near` it.
 ///
 /// # Errors
-/// When the loads have no equilibrium.
+///
+/// No equilibrium.
 pub(crate) fn at(
     assembly: &Assembly,
     t: f64,
@@ -76,13 +77,13 @@ pub(crate) fn at(
     }
 }
 
-/// Lets the search begin from shafts that are bent as in a solution.
+/// Starts the search from the amplitudes of a solution.
 fn bend(still: &mut StaticAssembly, known: &Equilibrium) {
     let shafts = still.shafts.iter_mut().zip(&known.amplitudes);
     shafts.for_each(|(shaft, amplitudes)| shaft.start.clone_from(amplitudes));
 }
 
-/// Near places that are known, or from anywhere.
+/// From known positions, or a cold start.
 fn search(
     loaded: &StaticAssembly,
     near: Option<&[Five]>,
@@ -96,7 +97,7 @@ fn search(
     solve_assembly(loaded, None, options)
 }
 
-/// Coordinates of bodies that are given, as they are given, and not as a pose has them.
+/// Replaces prescribed coordinates by their exact values, without the rounding of a pose.
 fn put_given(assembly: &Assembly, t: f64, found: &mut Equilibrium) {
     for (coordinates, body) in found.coordinates.iter_mut().zip(&assembly.bodies) {
         if let Some(at) = body.driven().and_then(|race| all_given(race, t)) {
@@ -105,7 +106,7 @@ fn put_given(assembly: &Assembly, t: f64, found: &mut Equilibrium) {
     }
 }
 
-/// Coordinates as far as they are given.
+/// Coordinates as far as they are prescribed.
 fn given(assembly: &StaticAssembly) -> Vec<Five> {
     let of = |body: &StaticBody| match &body.place {
         Place::Held(_) | Place::Section(_) => Five::zeros(),
@@ -114,8 +115,7 @@ fn given(assembly: &StaticAssembly) -> Vec<Five> {
     assembly.bodies.iter().map(of).collect()
 }
 
-/// The static problem of an assembly at time `t`; a rotating load stands still where it is then, an
-/// unbalance is left out.
+/// The static problem of an assembly at time `t`; a rotating load has its present direction, unbalance is omitted.
 pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAssembly<'static> {
     let carries_outer =
         |body: usize| assembly.bearings.iter().any(|bearing| bearing.mounts[1].body == body);
@@ -130,7 +130,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
             None => held_at(rest),
             Some(race) if let Some(at) = all_given(race, t) => held_at(&at),
             Some(race) => {
-                // A race alone against one that is held is looked for where its load would take it.
+                // A race with a fixed partner is searched in the direction of its load.
                 let alone = !carries_outer(index)
                     && assembly.bearings.len() == 1
                     && rest[0] == 0.0
@@ -170,7 +170,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
     still
 }
 
-/// What is given of a body's coordinates or acts along them at time `t`: its drives, weight, rotating load.
+/// Conditions on a body's coordinates at time `t`: drives, weight, rotating load.
 pub fn conditions(assembly: &Assembly, body: &Body, race: &DrivenBody, t: f64) -> [Condition; 5] {
     let mut others = [0.0; 5];
     for (other, gravity) in others.iter_mut().zip(assembly.gravity) {
@@ -194,7 +194,7 @@ fn held_at(at: &[f64; 5]) -> Place {
     })
 }
 
-/// Coordinates of a body all of which are given.
+/// Coordinates of a body if all are prescribed.
 fn all_given(race: &DrivenBody, t: f64) -> Option<[f64; 5]> {
     let mut at = [0.0; 5];
     for (at, drive) in at.iter_mut().zip(&race.drives) {
@@ -204,12 +204,12 @@ fn all_given(race: &DrivenBody, t: f64) -> Option<[f64; 5]> {
     Some(at)
 }
 
-/// Whether nothing is looked for of a body.
+/// Returns whether a body has no unknown.
 pub(crate) fn is_held(body: &Body) -> bool {
     body.driven().is_none_or(|race| all_given(race, 0.0).is_some())
 }
 
-/// Given speed of a body about its own axis at `t`, rad/s; zero when it is driven by a torque, or fixed.
+/// Prescribed speed of a body about its own axis at `t`, rad/s; zero for a torque drive or a fixed body.
 pub fn given_speed(body: &Body, t: f64) -> f64 {
     match body.driven().map(|race| &race.rotation) {
         Some(Rotation::Speed(profile)) => profile.value(t),
@@ -217,7 +217,7 @@ pub fn given_speed(body: &Body, t: f64) -> f64 {
     }
 }
 
-/// Angle by which the given speed has turned a body since t = 0, rad.
+/// Angle of the prescribed rotation of a body since t = 0, rad.
 pub(crate) fn given_angle(body: &Body, t: f64) -> f64 {
     match body.driven().map(|race| &race.rotation) {
         Some(Rotation::Speed(profile)) => profile.integral(t),
@@ -225,12 +225,12 @@ pub(crate) fn given_angle(body: &Body, t: f64) -> f64 {
     }
 }
 
-/// Given speeds of both races of a bearing about the bearing's axis, rad/s.
+/// Prescribed speeds of both races of a bearing about the bearing's axis, rad/s.
 pub(crate) fn race_speeds(assembly: &Assembly, bearing: &Bearing, t: f64) -> [f64; 2] {
     of_races(assembly, bearing, |body| given_speed(body, t))
 }
 
-/// What both races of a bearing have about the bearing's axis.
+/// A value of both races about the bearing's axis.
 fn of_races(assembly: &Assembly, bearing: &Bearing, of: impl Fn(&Body) -> f64) -> [f64; 2] {
     bearing.mounts.map(|mount| {
         let own = of(&assembly.bodies[mount.body]);
@@ -243,15 +243,15 @@ pub(crate) fn orbital_speed(assembly: &Assembly, bearing: &Bearing, t: f64) -> f
     rolled(bearing, race_speeds(assembly, bearing, t))
 }
 
-/// Angle by which pure rolling has taken the ball set about the bearing's axis since t = 0, rad.
+/// Angle of the ball set about the bearing's axis by pure rolling since t = 0, rad.
 pub fn orbital_angle(assembly: &Assembly, bearing: &Bearing, t: f64) -> f64 {
     rolled(bearing, of_races(assembly, bearing, |body| given_angle(body, t)))
 }
 
-/// What is left to balls of turns of the inner and of the outer race.
+/// Rotation of the ball set from those of the inner and the outer race.
 fn rolled(bearing: &Bearing, [inner, outer]: [f64; 2]) -> f64 {
     let g = &bearing.geometry;
     let ratio = ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
-    // Both races' surfaces move past the balls: the outer one's share is the rest.
+    // Both surfaces move past the balls: the outer race has the rest.
     if outer == 0.0 { ratio * inner } else { ratio * inner + (1.0 - ratio) * outer }
 }

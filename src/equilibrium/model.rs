@@ -1,4 +1,4 @@
-//! What a search for an equilibrium looks at: bodies, their coordinates and axes, and what was found at one place.
+//! Model of an equilibrium search: bodies, their coordinates and axes, and an evaluation.
 
 use crate::assembly::plan;
 use crate::assembly::plan::statics::StaticSteps;
@@ -17,20 +17,19 @@ use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector3};
 
 pub(crate) type Five = SVector<f64, 5>;
 
-/// What does not change while bodies move.
+/// Constants of a search.
 pub(crate) struct Model<'a> {
     pub(crate) assembly: &'a StaticAssembly<'a>,
-    /// What each evaluation does.
+    /// Stages of each evaluation.
     pub(crate) steps: StaticSteps,
     pub(crate) bearings: Vec<BearingModel>,
-    /// Axes of each body's coordinates as each seat sees them from where its race's motion is measured.
+    /// Axes of each body's coordinates relative to the nominal pose of each housing fit.
     seat_axes: Vec<Pose>,
-    /// First unknown of each body; `None` where it is held. Those of sections follow behind all others: they are none that
-    /// is looked for.
+    /// First unknown of each body; `None` if it is fixed. Coordinates of sections follow all unknowns.
     pub(crate) unknowns: Vec<Option<usize>>,
-    /// First amplitude of each shaft that bends.
+    /// First amplitude of each flexible shaft.
     shafts: Vec<usize>,
-    /// Unknowns and what follows from them.
+    /// Number of unknowns and dependent coordinates.
     pub(crate) coordinates: usize,
     /// Metres per unit of each unknown: 1 for lengths, a pitch radius (that of a seat, without a bearing) for tilts.
     pub(crate) scale: DVector<f64>,
@@ -39,17 +38,16 @@ pub(crate) struct Model<'a> {
 pub(crate) struct BearingModel {
     pub(crate) contacts: BallContacts,
     pub(crate) azimuths: Vec<f64>,
-    /// Of each ball, N, and outwards per distance from the axis, N/m: as planned.
+    /// Weight of a ball, N, and centrifugal force per distance from the axis, N/m: as planned.
     pub(crate) weight: Vector3<f64>,
     pub(crate) centrifugal: f64,
-    /// Places of races and balls count from here.
+    /// Origin of the positions of races and balls.
     pub(crate) origin: Vector3<f64>,
-    /// Where the outer race is held.
+    /// Ball planes of a fixed outer race.
     pub(crate) planes: Vec<BallPlane>,
 }
 
-/// Where a bearing's outer race stands as far as it is known beforehand; for one whose races are bodies
-/// themselves that of the frame.
+/// Position of a bearing's outer race as far as it is known beforehand; for races that are bodies that of the frame.
 fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
     let [inner, outer] = &bearing.mounts;
     if inner.is_direct() && outer.is_direct() {
@@ -81,7 +79,7 @@ fn on_section_of(assembly: &StaticAssembly, body: usize) -> Option<f64> {
     assembly.bearings.iter().find(on_it).map(|bearing| bearing.geometry.pitch_radius)
 }
 
-/// Metres that the sections of a shaft move at most by a unit of each amplitude.
+/// Largest displacement of the sections of a shaft per unit of each amplitude.
 fn reaches(assembly: &StaticAssembly, shaft: usize) -> Vec<f64> {
     let of = &assembly.shafts[shaft];
     let mut reach = vec![0.0f64; of.springs.len()];
@@ -93,7 +91,7 @@ fn reaches(assembly: &StaticAssembly, shaft: usize) -> Vec<f64> {
             reach.iter_mut().zip(all).for_each(|(reach, own)| *reach = reach.max(own.abs()));
         }
     }
-    // A shape that moves no section stands still at its spring.
+    // A mode that moves no section stays at its spring.
     reach.into_iter().map(|reach| if reach > 0.0 { reach } else { 1.0 }).collect()
 }
 
@@ -164,7 +162,7 @@ impl<'a> Model<'a> {
         Model { assembly, steps, bearings, seat_axes, unknowns, shafts, coordinates, scale }
     }
 
-    /// Puts the coordinates of all sections behind the unknowns that they follow from.
+    /// Writes the coordinates of all sections, which follow from the unknowns.
     pub(crate) fn follow(&self, at: &mut DVector<f64>) {
         if self.coordinates == self.scale.len() {
             return;
@@ -202,7 +200,7 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// How many unknowns are bodies' coordinates.
+    /// Number of unknowns of bodies.
     pub(crate) fn bodies_end(&self) -> usize {
         self.shafts.first().copied().unwrap_or(self.scale.len())
     }
@@ -231,7 +229,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Axes of a body's coordinates where they are not the assembly's.
+    /// Axes of a body's coordinates; `None` for those of the assembly.
     pub(crate) fn axes(&self, body: usize) -> Option<&Pose> {
         match &self.assembly.bodies[body].place {
             Place::Loaded(loaded) => loaded.axes.as_deref(),
@@ -240,7 +238,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Whether a body's coordinates are along the assembly's own axes.
+    /// Returns whether a body's coordinates are along the assembly's own axes.
     pub(crate) fn is_plain(&self, body: usize) -> bool {
         self.axes(body).is_none()
     }
@@ -251,7 +249,7 @@ impl<'a> Model<'a> {
         self.axes(body).map_or(Matrix3::identity(), turn)
     }
 
-    /// About which a body's two tilts turn it, in the assembly's frame.
+    /// Axes of a body's two tilts, in the assembly's frame.
     pub(crate) fn tilt_axes(&self, body: usize, at: &DVector<f64>) -> [Vector3<f64>; 2] {
         let q = self.coordinates(body, at);
         let own = [Vector3::y(), quaternion(0.0, q[3], q[4]) * Vector3::z()];
@@ -286,7 +284,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// A seat's race in its bore.
+    /// Position of a race in its bore.
     pub(crate) fn seat_place(&self, seat: usize, at: &DVector<f64>) -> SeatPlace {
         let (mount, axes) = (&self.assembly.seats[seat].mount, &self.seat_axes[seat]);
         let coordinates = self.coordinates(mount.body, at);
@@ -299,7 +297,7 @@ impl<'a> Model<'a> {
         SeatPlace::new(race.seen_from_parent_of(axes), mount, &turn)
     }
 
-    /// The first seat of a body.
+    /// The first housing fit of a body.
     pub(crate) fn seat_of(&self, body: usize) -> Option<usize> {
         self.assembly.seats.iter().position(|seat| seat.mount.body == body)
     }
@@ -317,7 +315,7 @@ fn five(pose: &Pose) -> Five {
     Five::from([p.x, p.y, p.z, tilts[0], tilts[1]])
 }
 
-/// Bodies at one place.
+/// An evaluation at one position of the bodies.
 #[derive(Clone, Default)]
 pub(crate) struct Evaluation {
     pub(crate) at: DVector<f64>,
@@ -326,15 +324,15 @@ pub(crate) struct Evaluation {
     pub(crate) gradient: DVector<f64>,
     pub(crate) stiffness: DMatrix<f64>,
     pub(crate) largest_ball_load: f64,
-    /// Largest stiffness against one coordinate that is none of a seat's, N/m.
+    /// Largest stiffness against one coordinate outside of housing fits, N/m.
     pub(crate) stiffest: f64,
-    /// Forces that have no energy, N.
+    /// Forces without an energy, N.
     pub(crate) without_energy: f64,
-    /// What rounding leaves of the loads of all seats, N.
+    /// Rounding of the loads of all housing fits, N.
     pub(crate) seat_noise: f64,
-    /// Of each bearing.
+    /// Balls of each bearing.
     pub(crate) balls: Vec<Vec<Option<SettledBall>>>,
-    /// Where the outer race is not held.
+    /// Ball planes of outer races that are not fixed.
     pub(crate) planes: Vec<Vec<BallPlane>>,
 }
 

@@ -1,7 +1,7 @@
-//! Bearings, bodies and condensed housings along a course of loads, one equilibrium after the other.
+//! Quasi-static sequence of bearings, bodies and condensed housings: one equilibrium after the other.
 //!
-//! Balls go round at the speed of the cage in pure rolling; nothing is inert but the balls in their orbits. What that
-//! leaves out [`crate::vibrations::quasi_static_limit`] estimates.
+//! Balls orbit at the cage speed of pure rolling; inertia is omitted except for centrifugal forces of balls.
+//! [`crate::vibrations::quasi_static_limit`] estimates the omitted part.
 
 use crate::assembly::lists::{Assembly, Body};
 use crate::assembly::loads::Drive;
@@ -27,39 +27,39 @@ use crate::vibrations::quasi_static_limit::MovingBody;
 use nalgebra::Vector3;
 use thiserror::Error;
 
-/// What goes through equilibria: bodies under loads that change, and races in housings.
+/// Bodies under varying loads, and races in housings.
 #[derive(Clone)]
 pub struct QuasiStaticProblem<'b> {
     pub assembly: Assembly,
     pub seats: Vec<QuasiStaticFit<'b>>,
 }
 
-/// The outer race of a bearing in the bore of a housing of its own.
+/// The outer race of a bearing in the bore of its own housing.
 #[derive(Clone)]
 pub struct QuasiStaticFit<'b> {
-    /// As messages and columns name it; `None` for the only one.
+    /// Name in messages and columns; `None` for the only one.
     pub name: Option<String>,
     /// Index of the bearing.
     pub bearing: usize,
     pub bore: &'b CondensedBore,
     pub penalty: Penalty,
-    /// What holds the race along its axis.
+    /// Axial support of the race.
     pub axial: Axial,
-    /// Of the race, m: an interference grows in.
+    /// Radius of the race, m: an interference grows in.
     pub radius: Profile,
-    /// Of the housing per mass and velocity, 1/s: what leaving out inertia is judged by knows it.
+    /// Damping of the housing per mass and velocity, 1/s, for the estimate of the omitted inertia.
     pub damping: f64,
 }
 
-/// All at one time.
+/// Equilibrium at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EquilibriumAt {
     /// s.
     pub time: f64,
     pub solution: AssemblySolution,
-    /// Largest unbalanced load of a race in its bore over the load on it.
+    /// Largest load residual of a race in its bore over its load.
     pub residual: f64,
-    /// Of the nodes that touch.
+    /// Changes of the contact nodes.
     pub contact_changes: usize,
 }
 
@@ -75,15 +75,15 @@ impl QuasiStaticFit<'_> {
         Fit { radius: self.radius.value(t), axial: self.axial }
     }
 
-    /// The body that sits there.
+    /// The body of the race.
     pub fn body(&self, assembly: &Assembly) -> usize {
         assembly.bearings[self.bearing].mounts[1].body
     }
 }
 
 impl<'b> QuasiStaticFit<'b> {
-    /// Puts the race, as large as it is at `t`, in its bore: nothing of that holds it along its axis, so that it stays in
-    /// its place there.
+    /// Puts the race, with its radius at `t`, in its bore; its axial position is fixed, since the bore does not support
+    /// it along the axis.
     pub fn add_to(&self, still: &mut StaticAssembly<'b>, t: f64) {
         let [inner, outer] = still.bearings[self.bearing].mounts.map(|mount| mount.body);
         if let Place::Loaded(race) = &mut still.bodies[outer].place
@@ -94,7 +94,7 @@ impl<'b> QuasiStaticFit<'b> {
         if still.bearings.len() == 1
             && let Place::Loaded(race) = &mut still.bodies[inner].place
         {
-            // Looked for where its load would take it.
+            // Searched in the direction of its load.
             race.start = None;
         }
         still.seats.push(StaticSeat {
@@ -109,7 +109,7 @@ impl<'b> QuasiStaticFit<'b> {
 }
 
 impl<'b> QuasiStaticProblem<'b> {
-    /// What is in equilibrium at `t`, the balls where they have rolled to.
+    /// Static problem at `t`, with the balls at their rolled positions.
     pub fn at(&self, t: f64) -> StaticAssembly<'b> {
         let bearings = self.assembly.bearings.iter();
         let turned: Vec<f64> =
@@ -119,10 +119,11 @@ impl<'b> QuasiStaticProblem<'b> {
         still
     }
 
-    /// The equilibrium at `t`, looked for from the last one.
+    /// Equilibrium at `t`, searched from the last one.
     ///
     /// # Errors
-    /// None of all together, a load along an axis that nothing takes.
+    ///
+    /// No equilibrium; an axial load without support.
     pub fn find(
         &self,
         search: &mut WarmStartedSearch<'b>,
@@ -131,10 +132,11 @@ impl<'b> QuasiStaticProblem<'b> {
         self.solve(search, &self.at(t), t).map_err(|source| QuasiStaticError { time: t, source })
     }
 
-    /// The equilibrium of these lists, made of the same at `t`.
+    /// Equilibrium of these lists, made by [`QuasiStaticProblem::at`] for `t`.
     ///
     /// # Errors
-    /// As [`QuasiStaticProblem::find`].
+    ///
+    /// See [`QuasiStaticProblem::find`].
     pub fn solve(
         &self,
         search: &mut WarmStartedSearch<'b>,
@@ -174,7 +176,7 @@ impl<'b> QuasiStaticProblem<'b> {
         unbalanced(&self.seats[seat].fit(t), &on_race, &found.seats[seat], &state.balls)
     }
 
-    /// Position from the bearing's place (m) and tilts (rad) of a race of a bearing.
+    /// Position relative to the bearing (m) and tilts (rad) of a race.
     pub fn race(&self, found: &AssemblySolution, bearing: usize, side: usize) -> [f64; 5] {
         let of = &self.assembly.bearings[bearing];
         let mount = &of.mounts[side];
@@ -188,7 +190,7 @@ impl<'b> QuasiStaticProblem<'b> {
                 }
                 None => kinematics_at_mount(&fixed(&at), mount),
             };
-            // In the scene's axes, whichever way round it is put in.
+            // In the scene's axes, also for a reversed bearing.
             let axis = scale(race.motion.axis, if mount.reversed { -1.0 } else { 1.0 });
             let ([x, y, z], [tilt_y, tilt_z]) = (race.state.position, tilts_of(axis));
             at = [x, y, z, tilt_y, tilt_z];
@@ -197,7 +199,7 @@ impl<'b> QuasiStaticProblem<'b> {
         at
     }
 
-    /// A section of a body that bends, and what sits there as `mount` says.
+    /// A section of a flexible body, with an attachment as `mount` says.
     pub fn section(
         &self,
         found: &AssemblySolution,
@@ -212,14 +214,14 @@ impl<'b> QuasiStaticProblem<'b> {
         section.place(&body, mount, &Bend::of(of.count(), &entries)).race
     }
 
-    /// Whether a race of a bearing may move.
+    /// Returns whether a race of a bearing may move.
     pub fn moves(&self, bearing: usize, side: usize) -> bool {
         let body = self.assembly.bearings[bearing].mounts[side].body;
         self.assembly.bodies[body].moves()
     }
 
-    /// The bodies that loads move, with what is inert of them. Along the axis, where bearings are soft and nothing
-    /// drives it, a body under a load that does not change counts as held.
+    /// Bodies moved by loads, with their inertia. Along the axis, where bearings are soft and nothing drives it, a body
+    /// under constant load counts as fixed.
     pub fn moving(&self) -> Vec<MovingBody> {
         let still = self.at(0.0);
         let bodies = still.bodies.iter().zip(&self.assembly.bodies).enumerate();
@@ -234,7 +236,7 @@ impl<'b> QuasiStaticProblem<'b> {
     }
 }
 
-/// What acts along a body's coordinates besides contacts and springs.
+/// Loads along a body's coordinates in addition to contacts and springs.
 fn own_loads(assembly: &Assembly, body: &Body, t: f64) -> [f64; 5] {
     let Some(race) = body.driven() else { return [0.0; 5] };
     conditions(assembly, body, race, t).map(|condition| match condition {
@@ -243,32 +245,32 @@ fn own_loads(assembly: &Assembly, body: &Body, t: f64) -> [f64; 5] {
     })
 }
 
-/// A course on its way from row to row.
+/// A quasi-static sequence at one row.
 pub struct QuasiStaticSequence<'b> {
     pub problem: QuasiStaticProblem<'b>,
     search: WarmStartedSearch<'b>,
-    /// Between rows, s.
+    /// Time between rows, s.
     interval: f64,
-    /// Equilibria so far; the first is at the start.
+    /// Number of equilibria so far; the first is at the start.
     pub found: u64,
-    /// The latest one.
+    /// The latest equilibrium.
     pub latest: Option<EquilibriumAt>,
     pub effort: Effort,
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub ran: StageCounts,
 }
 
-/// What equilibria took.
+/// Work of the equilibria.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// Largest share of the load on a race in its bore that was left unbalanced.
+    /// Largest load residual of a race in its bore over its load.
     pub largest_residual: f64,
-    /// Newton iterations, changes of the nodes that touch.
+    /// Newton iterations, changes of the contact nodes.
     pub iterations: usize,
     pub contact_changes: usize,
 }
 
-/// What a course goes on from with the same bits.
+/// Checkpoint, from which a sequence continues with the same bits.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct QuasiStaticCheckpoint {
     /// s.
@@ -276,7 +278,7 @@ pub struct QuasiStaticCheckpoint {
     pub found: u64,
     pub effort: Effort,
     pub memory: CourseMemory,
-    /// Nodes of each bore.
+    /// Number of nodes of each bore.
     pub nodes: Vec<usize>,
 }
 
@@ -296,7 +298,7 @@ impl<'b> QuasiStaticSequence<'b> {
         }
     }
 
-    /// Of the latest equilibrium, s.
+    /// Time of the latest equilibrium, s.
     pub fn time(&self) -> f64 {
         self.found.saturating_sub(1) as f64 * self.interval
     }
@@ -304,6 +306,7 @@ impl<'b> QuasiStaticSequence<'b> {
     /// Solves for the next row.
     ///
     /// # Errors
+    ///
     /// No equilibrium at its time.
     pub fn find_next(&mut self) -> Result<(), QuasiStaticError> {
         let time = self.found as f64 * self.interval;
@@ -329,16 +332,17 @@ impl<'b> QuasiStaticSequence<'b> {
         }
     }
 
-    /// Goes on where a checkpoint of the same course was taken.
+    /// Continues from a checkpoint of the same sequence.
     ///
     /// # Errors
-    /// As [`WarmStartedSearch::recall`].
+    ///
+    /// See [`WarmStartedSearch::recall`].
     pub fn restore(&mut self, kept: &QuasiStaticCheckpoint) -> Result<(), BoreError> {
         (self.found, self.effort) = (kept.found, kept.effort);
         self.search.recall(&kept.memory)
     }
 
-    /// Displacements of a housing in the latest equilibrium, m; of none without one.
+    /// Displacements of a housing in the latest equilibrium, m; empty without one.
     pub fn displacement(&self, seat: usize) -> Vec<Vec3> {
         let (Some(moment), Some(of)) = (&self.latest, self.problem.seats.get(seat)) else {
             return Vec::new();

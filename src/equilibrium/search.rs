@@ -1,8 +1,8 @@
-//! The search for an equilibrium: Newton's method with a trust radius on the energy, over the coordinates
-//! of all bodies that are loaded. Balls are in equilibrium at every evaluation.
+//! The equilibrium search: Newton's method with a trust radius on the energy, over the coordinates of all loaded
+//! bodies. Balls are in equilibrium at every evaluation.
 //!
-//! Each bearing, connection, shaft and seat adds energy, force and stiffness over the coordinates of its bodies, what is its
-//! own eliminated: balls in equilibrium, nodes of a bore in contact or not.
+//! Each bearing, connection, shaft and housing fit adds energy, force and stiffness over the coordinates of its bodies,
+//! with its own unknowns eliminated: balls in equilibrium, bore nodes in contact or not.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::StageCounts;
@@ -19,20 +19,20 @@ use crate::members::static_shaft::{add_curvature, add_shaft, onto_unknowns, sect
 use crate::solids::bore_equilibrium::BoreSearch;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// First trust radius where nothing but springs holds, m: it grows by itself.
+/// First trust radius without bearings, m; it grows by itself.
 const WITHOUT_BEARING: f64 = 1e-4;
 
-/// Artificial stiffness of a body in a bore, as a part of its largest: a race that touches nothing, or one row of
-/// nodes, stays where it is in directions in which nothing holds it. Its force is nothing in equilibrium.
+/// Artificial stiffness of a body in a bore, as a fraction of its largest stiffness: a race without contact, or in
+/// contact with one row of nodes, keeps its position in directions without support. Its force vanishes in equilibrium.
 const HINT: f64 = 1e-8;
 
-/// Unbalanced loads of so many times what is allowed may be what rounding leaves.
+/// A residual up to this many times the tolerance may be rounding error.
 const ROUNDED: f64 = 1e2;
 
-/// Part of the first trust radius within which another node that touches is looked beyond.
+/// Fraction of the first trust radius within which the search steps across a change of contact nodes.
 const NEAR: f64 = 1e-2;
 
-/// Part of the first trust radius below which no step goes anywhere.
+/// Smallest step, as a fraction of the first trust radius.
 const LEAST: f64 = 1e-6;
 
 /// Gradient and stiffness over metres, as [`Search::scaled`] gives them.
@@ -42,7 +42,7 @@ pub(crate) struct Scaled {
 }
 
 impl Scaled {
-    /// Of the energy, as the quadratic model has it over a step in metres, J.
+    /// Change of the energy in the quadratic model for a step in metres, J.
     fn change(&self, step: &DVector<f64>) -> f64 {
         self.gradient.dot(step) + 0.5 * step.dot(&(&self.stiffness * step))
     }
@@ -51,16 +51,16 @@ impl Scaled {
 pub(crate) struct Search<'a, 'b> {
     pub(crate) model: &'a Model<'a>,
     options: &'a StaticOptions,
-    /// Contact in the bore of each seat.
+    /// Contact in the bore of each housing fit.
     pub(crate) bores: &'a mut [BoreSearch<'b>],
     pub(crate) loads: DVector<f64>,
     pub(crate) free: Vec<bool>,
-    /// Unknown, stiffness and rest of each spring to the ground.
+    /// Unknown, stiffness and unloaded position of each spring to the ground.
     pub(crate) springs: Vec<(usize, f64, f64)>,
     pub(crate) saddles_left: usize,
     pub(crate) iterations: usize,
     pub(crate) contact_evaluations: usize,
-    /// How often each stage has run.
+    /// Number of runs of each stage.
     pub(crate) ran: StageCounts,
     spare: Option<Evaluation>,
 }
@@ -110,7 +110,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// Where the search begins.
+    /// Start of the search.
     pub(crate) fn start(&self) -> DVector<f64> {
         let mut at = DVector::zeros(self.free.len());
         for (index, first, body) in self.model.loaded() {
@@ -127,7 +127,7 @@ impl<'a, 'b> Search<'a, 'b> {
         at
     }
 
-    /// Coordinates with the unknowns moved on.
+    /// Coordinates after a change of the unknowns.
     pub(crate) fn moved(&self, from: &DVector<f64>, by: &DVector<f64>) -> DVector<f64> {
         let mut at = from.clone();
         let mut unknowns = at.rows_mut(0, by.len());
@@ -135,12 +135,12 @@ impl<'a, 'b> Search<'a, 'b> {
         at
     }
 
-    /// The same by a step in metres.
+    /// The same for a step in metres.
     fn stepped(&self, from: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
         self.moved(from, &step.component_div(&self.model.scale))
     }
 
-    /// Largest stiffness against one coordinate of a body, or a shift of a section, N/m.
+    /// Largest stiffness against one coordinate of a body, or a displacement of a section, N/m.
     fn stiffest(&self, here: &Evaluation) -> f64 {
         let of_bodies = (0..self.model.bodies_end())
             .map(|i| here.stiffness[(i, i)] / self.model.scale[i].powi(2));
@@ -150,7 +150,7 @@ impl<'a, 'b> Search<'a, 'b> {
         of_bodies.chain(of_sections).fold(0.0, f64::max)
     }
 
-    /// Takes given coordinates to their values.
+    /// Sets prescribed coordinates to their values.
     pub(crate) fn impose(&self, at: &mut DVector<f64>) {
         for (_, first, body) in self.model.loaded() {
             for i in 0..5 {
@@ -161,7 +161,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// Where the loads would take a body that carries one inner race against a held outer one.
+    /// Estimated position of a body with one inner race and a fixed outer race.
     fn guess(&self, body: usize, loaded: &Loaded) -> Five {
         let on_it = |bearing: &&StaticBearing| bearing.mounts[0].body == body;
         let bearing = self.model.assembly.bearings.iter().find(on_it);
@@ -181,7 +181,8 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// # Errors
-    /// Contact in a bore that does not settle.
+    ///
+    /// Contact in a bore that does not converge.
     pub(crate) fn evaluate(&mut self, at: &DVector<f64>) -> Result<Evaluation, StaticsError> {
         let (unknowns, count) = (self.free.len(), self.model.coordinates);
         let bearings = self.model.bearings.len();
@@ -245,7 +246,7 @@ impl<'a, 'b> Search<'a, 'b> {
         Ok(here)
     }
 
-    /// Work and slope (without its sign) of loads on sections.
+    /// Work and gradient (without its sign) of loads on sections.
     fn load_sections(&self, here: &mut Evaluation) {
         for (first, loads) in self.model.section_loads() {
             let loads = Five::from(*loads);
@@ -254,7 +255,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// Work of the loads from where coordinates count, each by its size, J.
+    /// Sum of the magnitudes of the loads' work from the origin of the coordinates, J.
     fn worked(&self, of: &Evaluation) -> f64 {
         let unknowns = self.loads.iter().zip(of.at.iter());
         let sections = self.model.section_loads().flat_map(|(first, loads)| {
@@ -264,7 +265,7 @@ impl<'a, 'b> Search<'a, 'b> {
         unknowns.map(|(load, at)| (load * at).abs()).sum::<f64>() + sections
     }
 
-    /// Largest unbalanced load over the free coordinates, N.
+    /// Largest load residual over the free coordinates, N.
     pub(crate) fn residual(&self, here: &Evaluation) -> f64 {
         (0..self.free.len())
             .filter(|&i| self.free[i])
@@ -294,12 +295,12 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Residual at which to stop, N.
     fn allowed(&self, here: &Evaluation) -> f64 {
         let applied = self.applied();
-        // Rounding of positions (some ulps of the pitch radius) times the stiffness cannot go away.
+        // Rounding of positions (some ulps of the pitch radius) times the stiffness remains.
         let noise = 8.0 * f64::EPSILON * self.reach() * here.stiffest + here.seat_noise;
         self.options.tolerance * applied.max(here.largest_ball_load) + noise
     }
 
-    /// What rounding does to the energy, J.
+    /// Rounding of the energy, J.
     fn noise(&self, load: f64) -> f64 {
         let bearings = self.model.assembly.bearings.iter();
         bearings
@@ -342,7 +343,7 @@ impl<'a, 'b> Search<'a, 'b> {
             let residual = self.residual(here);
             let allowed = self.allowed(here);
             if residual <= allowed {
-                // What is found again stays to the bit.
+                // A solution found again stays the same to the bit.
                 return if self.iterations > begun { self.polish(here, residual) } else { Ok(()) };
             }
             if self.iterations >= self.options.max_iterations {
@@ -354,19 +355,19 @@ impl<'a, 'b> Search<'a, 'b> {
             let there = self.evaluate(&self.stepped(&here.at, &step))?;
             let predicted = scaled.change(&step);
             let change = there.energy - here.energy;
-            // Near the end the change drowns in rounding, and the unbalanced load decides alone.
+            // Near the end rounding dominates the change of energy, and the residual decides alone.
             let mut noise = self.noise(here.largest_ball_load.max(there.largest_ball_load));
             let assembly = self.model.assembly;
             let springs = !(assembly.connections.is_empty() && assembly.shafts.is_empty());
             if springs || !assembly.seats.is_empty() {
-                // Springs may hold far more energy than contacts, of which the loads' work may leave little.
+                // Springs may have far more energy than contacts, nearly cancelled by the loads' work.
                 let size = |of: &Evaluation| of.energy.abs() + 2.0 * self.worked(of);
                 noise += 16.0 * f64::EPSILON * size(here).max(size(&there));
             }
             noise += here.without_energy * step.norm();
             let quieter = self.residual(&there) < residual;
             let rounded = residual <= ROUNDED * allowed;
-            // A load that grows on the way down, by less than energies are known to: what changes as foretold is no rounding.
+            // A residual that grows while the energy falls less than its rounding: a change as predicted is real.
             let falls =
                 !rounded && change < 0.0 && (change - predicted).abs() <= 0.5 * predicted.abs();
             let accepted =
@@ -379,7 +380,8 @@ impl<'a, 'b> Search<'a, 'b> {
                 self.check_travel(here)?;
             } else {
                 if !assembly.seats.is_empty() && step.norm() <= NEAR * self.step_scale() {
-                    // Where a node comes to touch the slope has a bend: beyond it Newton's next step comes back to the bottom.
+                    // A node coming into contact bends the gradient: beyond it the next Newton step returns to the
+                    // minimum.
                     let next = self.newton_step(&self.scaled(&there), step.norm());
                     let beyond = self.evaluate(&self.stepped(&there.at, &next))?;
                     if beyond.energy - here.energy <= noise
@@ -391,7 +393,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 }
                 self.spare = Some(there);
                 if rounded && change.abs() <= noise {
-                    // Rounding, not the position, is what is left.
+                    // The residual is rounding.
                     return Ok(());
                 }
                 radius = 0.25 * radius.min(step.norm());
@@ -399,7 +401,7 @@ impl<'a, 'b> Search<'a, 'b> {
                     && radius <= LEAST * self.step_scale()
                     && self.is_falling(here)
                 {
-                    // On a saddle, which is left along its slope: energy cannot tell, and the load grows on the way down.
+                    // At a saddle, which is left along its gradient: the residual grows on the way down.
                     return Ok(());
                 }
             }
@@ -407,7 +409,8 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// # Errors
-    /// What was left of saddles and came to none but another one.
+    ///
+    /// A search that left a saddle and ended at another one.
     pub(crate) fn check_balance(&self, here: &Evaluation) -> Result<(), StaticsError> {
         let (residual, allowed) = (self.residual(here), self.allowed(here));
         if !self.model.steps.search || residual <= ROUNDED * allowed {
@@ -416,9 +419,8 @@ impl<'a, 'b> Search<'a, 'b> {
         self.give_up(here, residual, allowed)
     }
 
-    /// One more step of Newton's where more than one bearing holds the bodies: a balance that rounding may already have
-    /// spoilt leaves what is soft (a race in its bore against tilts) far less certain than the rest, and the error
-    /// falls as its square.
+    /// One more Newton step if several bearings support the bodies: rounding may leave soft coordinates (tilts of a
+    /// race in its bore) far less accurate than the rest, and the error falls quadratically.
     fn polish(&mut self, here: &mut Evaluation, residual: f64) -> Result<(), StaticsError> {
         let StaticAssembly { bearings, connections, seats, shafts, .. } = self.model.assembly;
         let no_spring = connections.iter().all(Connection::is_void) && shafts.is_empty();
@@ -435,8 +437,8 @@ impl<'a, 'b> Search<'a, 'b> {
         Ok(())
     }
 
-    /// Gradient and stiffness over metres (tilts times pitch radius), prescribed coordinates
-    /// replaced by a unit diagonal so that their step is zero.
+    /// Gradient and stiffness over metres (tilts times pitch radius); prescribed coordinates have a unit diagonal, so
+    /// that their step is zero.
     pub(crate) fn scaled(&self, here: &Evaluation) -> Scaled {
         let mut gradient = here.gradient.component_div(&self.model.scale);
         let mut stiffness = here.stiffness.clone();
@@ -455,11 +457,11 @@ impl<'a, 'b> Search<'a, 'b> {
         Scaled { gradient, stiffness }
     }
 
-    /// Step in metres: Newton's where the stiffness is positive, otherwise with as much of the
-    /// identity added as makes it so; never longer than `radius`.
+    /// Step in metres: Newton's if the stiffness is positive definite, otherwise with the identity added as necessary;
+    /// never longer than `radius`.
     fn newton_step(&self, scaled: &Scaled, radius: f64) -> DVector<f64> {
         let Scaled { gradient, stiffness } = scaled;
-        // Not of shapes: those of high frequency are stiffer than anything a body stands on, by any factor.
+        // Bodies only: modes of high frequency are stiffer than any support.
         let largest = stiffness.diagonal().rows(0, self.model.bodies_end()).amax();
         let floor = if largest > 0.0 { largest } else { gradient.amax() / radius };
         let hints = self.hints(stiffness);

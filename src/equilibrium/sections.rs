@@ -1,4 +1,4 @@
-//! Bodies that bend, in the static problem of an assembly: a section for each mount, load and unbalance on them.
+//! Flexible bodies in the static problem of an assembly: a section for each mount, load and unbalance.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::mount::Mount;
@@ -12,8 +12,8 @@ use nalgebra::{SVector, Vector3};
 
 type Five = SVector<f64, 5>;
 
-/// Adds shapes and sections at time `t` and mounts bearings and connections on these. Forces of unbalances are left out
-/// ([`unbalance_loads`] adds them).
+/// Adds modes and sections at time `t` and mounts bearings and connections on them, without the forces of unbalances
+/// (see [`unbalance_loads`]).
 pub(crate) fn add(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
     for (index, shaft) in assembly.shafts.iter().enumerate() {
         still.shafts.push(StaticShaft::new(shaft.body, &shaft.shapes));
@@ -46,7 +46,7 @@ pub(crate) fn add(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
     (still.bearings, still.connections) = (bearings, connections);
 }
 
-/// Of bearings, connections and seats, with what is there.
+/// Mounts of bearings, connections and housing fits, with names.
 fn mounts(assembly: &Assembly) -> impl Iterator<Item = (String, Mount)> {
     let bearings = assembly.bearings.iter().flat_map(|of| {
         let name = of.name.as_ref().map_or("the bearing".into(), |name| format!("bearing {name}"));
@@ -55,11 +55,11 @@ fn mounts(assembly: &Assembly) -> impl Iterator<Item = (String, Mount)> {
     let connections = &assembly.connections;
     let connections =
         connections.iter().flat_map(|of| of.ends.map(|mount| (of.name.clone(), mount)));
-    let seats = assembly.seats.iter().map(|seat| ("its seat".into(), seat.race));
+    let seats = assembly.seats.iter().map(|seat| ("its housing fit".into(), seat.race));
     bearings.chain(connections).chain(seats)
 }
 
-/// Static bodies that carry unbalances, each with its unbalance and the body that spins; in their order.
+/// Static bodies with unbalances, each with its unbalance and the rotating body, in their order.
 fn unbalanced<'a>(
     assembly: &'a Assembly,
     still: &StaticAssembly,
@@ -72,7 +72,7 @@ fn unbalanced<'a>(
         };
         let sections: Vec<usize> =
             still.bodies.iter().enumerate().filter(its).map(|of| of.0).collect();
-        // They were added last.
+        // Unbalances are the last sections.
         let first = sections.len() - shaft.unbalances.len();
         let own = sections[first..].iter().zip(&shaft.unbalances);
         all.extend(own.map(|(&body, unbalance)| (body, unbalance, shaft.body)));
@@ -80,8 +80,8 @@ fn unbalanced<'a>(
     all
 }
 
-/// Centrifugal forces of unbalances on sections at time `t`, each over the coordinates of its static body, where the
-/// sections have these tilts.
+/// Centrifugal forces of unbalances on sections at time `t`, each over the coordinates of its static body, for these
+/// tilts of the sections.
 pub(crate) fn unbalance_loads(
     assembly: &Assembly,
     still: &StaticAssembly,

@@ -1,4 +1,4 @@
-//! Where the search for a static equilibrium starts, and how far its first step may go.
+//! Start of the search for a static equilibrium, and its first trust radius.
 
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::{HertzContact, series_stiffness};
@@ -23,8 +23,8 @@ pub(crate) fn ball_contacts(
     }
 }
 
-/// First trust radius in m: the overlap that a force (N) and a moment (N·m) on a bearing and its preload
-/// make, and the clearance.
+/// First trust radius, m: the clearance, and the overlap by a force (N) and a moment (N·m) on a bearing and by its
+/// preload.
 pub(crate) fn step_scale(
     geometry: &BearingGeometry,
     contacts: &BallContacts,
@@ -35,13 +35,12 @@ pub(crate) fn step_scale(
     let stiffness = series_stiffness(contacts.inner_stiffness, contacts.outer_stiffness);
     let overlap = libm::cbrt(total / stiffness).powi(2);
     let room = geometry.radial_clearance.abs();
-    // A preloaded or unloaded bearing still needs a step of visible size: 1e-4 ball radii.
+    // A bearing with preload or without load needs a step of visible size too: 1e-4 ball radii.
     4.0 * (overlap + room).max(1e-4 * contacts.ball_radius)
 }
 
-/// Cold start: the position under the axial load alone where there is one, plus the radial shift
-/// that the radial load alone makes in a bearing with this clearance (Stribeck's estimate that the
-/// most loaded ball carries 5 F/(Z cos α)).
+/// Cold start: the position under the axial load alone, if there is one, plus the radial displacement under the radial
+/// load alone at this clearance (Stribeck's estimate: the most loaded ball carries 5 F/(Z cos α)).
 pub(crate) fn guess(
     geometry: &BearingGeometry,
     contacts: &BallContacts,
@@ -80,7 +79,7 @@ fn axial_position(contacts: &BallContacts, force: f64, stiffness: f64) -> f64 {
         let overlap = (distance - room).max(0.0);
         stiffness * overlap * overlap.sqrt() * (axial + x) / distance
     };
-    // The force rises with x on either side of its zero range; a coarse bisection is enough here.
+    // The force is monotonic on either side of its zero range; a coarse bisection suffices.
     let (mut low, mut high) = (-room - axial, room - axial);
     let reach = 4.0 * room;
     if force > 0.0 {

@@ -30,11 +30,11 @@ pub const COORDINATE_NAMES: [&str; 5] = ["x", "y", "z", "tilt_y", "tilt_z"];
 pub enum Condition {
     /// Applied force (N) or moment (N·m) on the inner race; the coordinate is unknown.
     Load(f64),
-    /// Given displacement (m) or tilt (rad); the reaction is unknown.
+    /// Prescribed displacement (m) or tilt (rad); the reaction is unknown.
     Displacement(f64),
 }
 
-/// A bearing, the position of its outer race and what is prescribed for its inner race.
+/// A bearing, the pose of its outer race and the conditions on its inner race.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticProblem {
     pub geometry: BearingGeometry,
@@ -48,7 +48,7 @@ pub struct StaticProblem {
     pub gravity: Vector3<f64>,
     /// Speed of the ball set about the bearing axis, rad/s (centrifugal force); 0 leaves it out.
     pub orbital_speed: f64,
-    /// Frame in which the inner race's five coordinates and loads are measured, in the world.
+    /// Frame of the inner race's five coordinates and loads, in the world.
     pub frame: Pose,
     /// Pose of the outer race in the world.
     pub outer_pose: Pose,
@@ -56,11 +56,11 @@ pub struct StaticProblem {
     pub conditions: [Condition; 5],
 }
 
-/// How far to iterate.
+/// Tolerances of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaticOptions {
-    /// Unbalanced load, as a fraction of the largest applied or ball load, at which to stop.
-    /// Rounding of the overlaps sets a floor of about 1e-12.
+    /// Load residual at which to stop, as a fraction of the largest applied or ball load. Rounding of the overlaps
+    /// limits it to about 1e-12.
     pub tolerance: f64,
     pub max_iterations: usize,
 }
@@ -76,10 +76,9 @@ impl Default for StaticOptions {
 pub struct ContactState {
     /// N.
     pub normal_load: f64,
-    /// δ of (2.1), m; zero or negative when open (negative: gap).
+    /// δ of (2.1), m; zero or negative for a gap.
     pub approach: f64,
-    /// Angle of the contact normal to the race's radial plane, rad; positive when the inner race
-    /// is pushed towards +X.
+    /// Angle of the contact normal to the race's radial plane, rad; positive for a force on the inner race towards +X.
     pub contact_angle: f64,
     /// Semi-axes of the contact ellipse, m.
     pub semi_major: f64,
@@ -99,17 +98,17 @@ pub struct BallState {
     pub position: Vector3<f64>,
     pub inner: ContactState,
     pub outer: ContactState,
-    /// Force along the circumference (towards larger azimuth) with which the cage keeps the ball at
-    /// its azimuth, N: what the contacts and the weight leave over in that direction.
+    /// Force of the cage on the ball along the circumference (towards larger azimuth), N: it balances contacts and
+    /// weight in that direction.
     pub cage_force: f64,
 }
 
-/// Whether the loads determine the position.
+/// Determinacy of the position under the loads.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Determinacy {
     Determinate,
-    /// The position is one of many: these directions (unit vectors over the five coordinates,
-    /// tilts multiplied by the pitch radius) meet no stiffness.
+    /// The position is one of many: these directions (unit vectors over the five coordinates, tilts multiplied by the
+    /// pitch radius) have no stiffness.
     Indeterminate {
         free_directions: Vec<DVector<f64>>,
     },
@@ -120,8 +119,8 @@ pub enum Determinacy {
 pub struct StaticSolution {
     /// x, y, z (m), tilt_y, tilt_z (rad) of the inner race in `frame`.
     pub coordinates: SVector<f64, 5>,
-    /// Loads that hold the inner race there: N, N, N, N·m, N·m. They are energy-conjugate to the
-    /// coordinates: the moments act about Y and about the race's own (tilted) Z axis.
+    /// Loads on the inner race: N, N, N, N·m, N·m. They are energy-conjugate to the coordinates: the moments act about
+    /// Y and about the race's own (tilted) Z axis.
     pub loads: SVector<f64, 5>,
     /// ∂loads/∂coordinates, symmetric, SI units.
     pub stiffness: SMatrix<f64, 5, 5>,
@@ -133,16 +132,16 @@ pub struct StaticSolution {
     pub moment_on_outer: Vector3<f64>,
     pub balls: Vec<BallState>,
     pub determinacy: Determinacy,
-    /// How often the search left an unstable equilibrium; not zero where symmetry lets the race
-    /// tip over to either side, so that the mirrored position is an equilibrium too.
+    /// Number of saddles left by the search. If not zero, symmetry lets the race tip to either side: the mirrored
+    /// position is an equilibrium too.
     pub saddles_left: usize,
     /// Newton iterations on the race's coordinates.
     pub iterations: usize,
-    /// Evaluations of one ball against one race, distance tests included.
+    /// Evaluations of one ball on one race, distance tests included.
     pub contact_evaluations: usize,
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub ran: StageCounts,
-    /// Largest unbalanced load over the free coordinates (moments divided by the pitch radius), N.
+    /// Largest load residual over the free coordinates (moments divided by the pitch radius), N.
     pub residual: f64,
 }
 
@@ -151,24 +150,24 @@ pub struct StaticSolution {
 pub struct AssemblySolution {
     /// x, y, z (m), tilt_y, tilt_z (rad) of each body.
     pub coordinates: Vec<SVector<f64, 5>>,
-    /// What holds each body that is loaded there, besides its springs: N, N, N, N·m, N·m, conjugate to the
-    /// coordinates; zero for bodies that are held as a whole.
+    /// Load on each body, besides its springs: N, N, N, N·m, N·m, conjugate to the coordinates; zero for fixed bodies.
     pub loads: Vec<SVector<f64, 5>>,
-    /// Of the shapes of each body that bends, along e₂, e₃ and the axis, m.
+    /// Modal amplitudes of each flexible body, along e₂, e₃ and the axis, m.
     pub amplitudes: Vec<Vec<f64>>,
-    /// ∂loads/∂coordinates over the coordinates of all loaded bodies in their order, SI units; what bends is in equilibrium.
+    /// ∂loads/∂coordinates over the coordinates of all loaded bodies in their order, SI units, with modes in
+    /// equilibrium.
     pub stiffness: DMatrix<f64>,
-    /// The same over coordinates and then amplitudes, nothing eliminated.
+    /// The same over coordinates and amplitudes, without elimination.
     pub with_shapes: DMatrix<f64>,
     pub bearings: Vec<BearingState>,
-    /// Each race in its bore.
+    /// State of each race in its bore.
     pub seats: Vec<BoreState>,
-    /// Of all bodies but those in bores, which count as held where they are.
+    /// Of all bodies but those in bores, which count as fixed.
     pub determinacy: Determinacy,
     pub saddles_left: usize,
     pub iterations: usize,
     pub contact_evaluations: usize,
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub ran: StageCounts,
     pub residual: f64,
 }
@@ -178,8 +177,8 @@ pub fn solve(problem: &StaticProblem) -> Result<StaticSolution, StaticsError> {
     solve_from(problem, None, &StaticOptions::default())
 }
 
-/// Equilibrium from a given position (`guess`: x, y, z in m, tilt_y, tilt_z in rad), as in a sweep
-/// where the neighbour's solution is at hand; `None` is a cold start.
+/// Equilibrium from a given position (`guess`: x, y, z in m, tilt_y, tilt_z in rad), as in a sweep with the solution of
+/// the previous point; `None` is a cold start.
 pub fn solve_from(
     problem: &StaticProblem,
     guess: Option<&SVector<f64, 5>>,
@@ -196,7 +195,7 @@ pub fn solve_from(
 const RACES: [usize; 2] = [0, 1];
 
 impl StaticProblem {
-    /// The same as lists: the inner race under its conditions, the outer race held.
+    /// The bearing as lists: the inner race under its conditions, the outer race fixed.
     pub fn assembly(&self) -> StaticAssembly<'static> {
         let inner = Loaded {
             axes: None,
@@ -231,7 +230,7 @@ impl StaticProblem {
 }
 
 impl From<AssemblySolution> for StaticSolution {
-    /// Of a bearing alone.
+    /// Solution of a bearing alone.
     fn from(mut solution: AssemblySolution) -> StaticSolution {
         let BearingState { forces, moments, balls, .. } = solution.bearings.remove(0);
         StaticSolution {
@@ -253,10 +252,11 @@ impl From<AssemblySolution> for StaticSolution {
     }
 }
 
-/// Equilibrium of an assembly, looked for `near` coordinates of its bodies (x, y, z in m, tilts in rad);
-/// `None` is a cold start.
+/// Equilibrium of an assembly, searched `near` coordinates of its bodies (x, y, z in m, tilts in rad); `None` is a cold
+/// start.
 ///
 /// # Errors
+///
 /// No equilibrium, or none found.
 pub fn solve_assembly(
     assembly: &StaticAssembly,
@@ -268,23 +268,25 @@ pub fn solve_assembly(
     solve_assembly_in(assembly, &mut bores, near, options)
 }
 
-/// The same with the contact in the bores of its seats as earlier searches left it.
+/// The same with the contact in the bores as earlier searches left it.
 ///
 /// # Errors
-/// As [`solve_assembly`].
+///
+/// See [`solve_assembly`].
 ///
 /// # Panics
-/// If there is not one for each seat.
+///
+/// If there is not one for each housing fit.
 pub fn solve_assembly_in<'b>(
     assembly: &StaticAssembly<'b>,
     bores: &mut [BoreSearch<'b>],
     near: Option<&[SVector<f64, 5>]>,
     options: &StaticOptions,
 ) -> Result<AssemblySolution, StaticsError> {
-    assert_eq!(assembly.seats.len(), bores.len(), "contact in each seat's bore");
+    assert_eq!(assembly.seats.len(), bores.len(), "contact in each bore");
     match solve_directly(assembly, bores, near, options) {
-        // A loose bearing under a small load lies in a long curved valley of the energy, along
-        // which Newton's method creeps. A larger load straightens it; follow that down.
+        // A loose bearing under a small load has a long curved valley of the energy, along which Newton's method is
+        // slow. A larger load straightens it; follow that down.
         Err(StaticsError::NotConverged { .. }) if near.is_none() => {
             unload(assembly, bores, options)
         }
@@ -317,7 +319,7 @@ fn unload<'b>(
                 }
             }
         }
-        // Loads too large for the bearing fail; a smaller multiple starts from where it was.
+        // Too large loads fail; a smaller multiple starts from the last position.
         if let Ok(solution) = solve_directly(&loaded, bores, start.as_deref(), options) {
             work.0 += solution.iterations;
             work.1 += solution.contact_evaluations;
@@ -352,15 +354,15 @@ fn solve_directly<'b>(
     if model.steps.search {
         search.descend(&mut here)?;
     }
-    // A cold start on a plane of symmetry can end on a saddle, from which a real race would fall;
-    // so leave it along the direction of negative stiffness and descend again.
+    // A cold start on a plane of symmetry can end on a saddle, an unstable position; so leave it along the direction of
+    // negative stiffness and descend again.
     let mut modes = search.modes(&here);
     for _ in 0..5 {
         let Some(direction) = search.falling_direction(&modes) else { break };
         let [one, other] = [1.0, -1.0].map(|sign| search.moved(&here.at, &(&direction * sign)));
         let (one, other) = (search.evaluate(&one)?, search.evaluate(&other)?);
         search.saddles_left += 1;
-        // The first of two that are alike.
+        // The first of two equal energies.
         here = if other.energy.total_cmp(&one.energy).is_lt() { other } else { one };
         search.descend(&mut here)?;
         modes = search.modes(&here);
@@ -372,14 +374,14 @@ fn solve_directly<'b>(
     solution(&mut search, here, modes)
 }
 
-/// Sleeves of bushings, which have no place beyond their walls.
+/// Sleeves of bushings must stay within their walls.
 fn check_walls(model: &Model, here: &Evaluation) -> Result<(), StaticsError> {
     for connection in &model.assembly.connections {
         let [one, other] = connection.ends.map(|mount| {
             kinematics_at_mount(&fixed(&model.coordinates(mount.body, &here.at).into()), &mount)
         });
         let ([.., across], wall) = (connection.extension([&one, &other]), connection.wall());
-        // NaN is too far.
+        // NaN must fail.
         if across <= wall {
             continue;
         }
@@ -419,7 +421,7 @@ fn solution(
     })
 }
 
-/// Stiffness over the coordinates of bodies, amplitudes in equilibrium.
+/// Stiffness over the coordinates of bodies, with amplitudes in equilibrium.
 fn of_bodies(whole: &DMatrix<f64>, bodies: usize) -> DMatrix<f64> {
     let shapes = whole.nrows() - bodies;
     let own = whole.view((0, 0), (bodies, bodies)).into_owned();

@@ -1,5 +1,4 @@
-//! What an equilibrium, or a search for one, has to be looked at for: bodies that go away, balls that leave, directions
-//! in which nothing holds.
+//! Checks of an equilibrium or a search: bodies or balls that leave their bearing, directions without stiffness.
 
 use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBearing};
 use crate::ch2_housing::bearing::contact::normal_load;
@@ -11,11 +10,11 @@ use crate::members::static_shaft::SectionPlace;
 use crate::solids::bore_equilibrium::BoreState;
 use nalgebra::{DVector, SymmetricEigen, Vector3};
 
-/// Stiffness below this fraction of the largest one counts as none. Rounding of the overlaps leaves
-/// about 1e-12; the softest real direction, the swivel of a loaded ball, has about 1e-3.
+/// Stiffness below this fraction of the largest one counts as zero. Rounding of the overlaps gives about 1e-12; the
+/// softest real direction, the swivel of a loaded ball, has about 1e-3.
 const NO_STIFFNESS: f64 = 1e-9;
-/// Part of its radius by which a race may leave its place while it is looked for, and in the end: nothing that a bore
-/// holds moves by a hundredth of its radius.
+/// Largest displacement of a race in its bore, in radii, during the search and at the end: a bore moves by less than a
+/// hundredth of its radius.
 const LOST: f64 = 1e3;
 pub(crate) const FAR: f64 = 1e-2;
 
@@ -23,12 +22,12 @@ pub(crate) const FAR: f64 = 1e-2;
 pub(crate) type Modes = Vec<(f64, DVector<f64>)>;
 
 impl Search<'_, '_> {
-    /// Every ball settled, and none past the edge of what a torus can hold.
+    /// Checks that every ball has converged, within the range of a torus.
     pub(crate) fn check_balls(&self, here: &Evaluation) -> Result<(), StaticsError> {
-        /// Newton's last step leaves 1e-11; anything above this is a ball still on its way.
+        /// Newton's last step leaves 1e-11; a larger residual is not converged.
         const SETTLED: f64 = 1e-8;
-        /// Loads in parts of a ball's own force (weight, centrifugal) from which on races press it. What less than that
-        /// lays on the far side of a groove hangs there loose, and says nothing of the others; a warning says so.
+        /// Load in parts of a ball's own force (weight, centrifugal) above which a ball is between the races. With less
+        /// it hangs loose on the far side of a groove; a warning reports that.
         const PRESSED: f64 = 2.0;
         for (bearing, of) in self.model.assembly.bearings.iter().enumerate() {
             let race = self.model.race(bearing, 0, &here.at);
@@ -79,7 +78,7 @@ impl Search<'_, '_> {
         residual: f64,
         allowed: f64,
     ) -> Result<(), StaticsError> {
-        // Of the body that is farthest from balance.
+        // Body with the largest residual.
         let worst = |first: usize| {
             (first..first + 5)
                 .filter(|&i| self.free[i])
@@ -108,7 +107,7 @@ impl Search<'_, '_> {
             let from = Five::from(body.start.unwrap_or([0.0; 5])) + self.carried(index, here);
             for i in (0..5).filter(|&i| self.free[first + i]) {
                 let travel = (here.at[first + i] - from[i]) * self.model.scale[first + i];
-                // NaN leaves here too.
+                // NaN must fail.
                 let near = travel.abs() <= body.room;
                 if !near && !self.is_held_near(index, i, &from, here) {
                     let body = &self.model.assembly.bodies[index];
@@ -127,8 +126,8 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Whether a section at which something takes hold of a body that bends is within the body's room of where it was in a straight
-    /// shaft, along coordinate `i`: the body's centre goes as far as the shaft bends.
+    /// Returns whether an attachment of a flexible body is within the body's limits of its position on a straight
+    /// shaft, along coordinate `i`: the body's centre moves as far as the shaft bends.
     fn is_held_near(&self, body: usize, i: usize, from: &Five, here: &Evaluation) -> bool {
         let StaticAssembly { bodies, bearings, connections, shafts, .. } = self.model.assembly;
         let Place::Loaded(Loaded { room, .. }) = &bodies[body].place else { return false };
@@ -153,15 +152,16 @@ impl Search<'_, '_> {
                 })
     }
 
-    /// Every race within a part of its radius of its place in its bore.
+    /// Checks that every race is within a fraction of its radius of its position in its bore.
     ///
     /// # Errors
-    /// A race that nothing holds, a housing that gives way.
+    ///
+    /// A race without support; a housing that moves away.
     pub(crate) fn check_seats(&self, here: &Evaluation, part: f64) -> Result<(), StaticsError> {
         for (index, seat) in self.model.assembly.seats.iter().enumerate() {
             let place = self.model.seat_place(index, &here.at);
             let (pose, radius) = (place.pose, seat.fit.radius);
-            // Angles of an axis come round.
+            // Angles of an axis are periodic.
             let turn = if place.is_direct() { part } else { part.min(1.0) };
             let allowed = [part * radius, part * radius, turn, turn];
             let parts: [f64; 4] = std::array::from_fn(|i| pose[i].abs() / allowed[i]);
@@ -181,10 +181,11 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Each race in its bore.
+    /// State of each race in its bore.
     ///
     /// # Errors
-    /// Contact that does not settle, a race beyond what its bore was condensed for.
+    ///
+    /// Contact that does not converge; a race outside the range for which its bore was condensed.
     pub(crate) fn seat_states(
         &mut self,
         here: &Evaluation,
@@ -193,7 +194,7 @@ impl Search<'_, '_> {
         for (index, seat) in self.model.assembly.seats.iter().enumerate() {
             let pose = self.model.seat_place(index, &here.at).pose;
             let bore = &mut self.bores[index];
-            // As the last evaluation has it, unless that was a step too far.
+            // State of the last evaluation, unless that was a rejected step.
             let state =
                 if bore.pose() == pose { bore.state() } else { bore.at_pose(&seat.fit, pose) };
             states.push(state.map_err(|source| StaticsError::Seat { of: seat.suffix(), source })?);
@@ -201,7 +202,7 @@ impl Search<'_, '_> {
         Ok(states)
     }
 
-    /// The body itself, or the one of which it is a section.
+    /// The body itself, or that of a section.
     fn whole(&self, body: usize) -> usize {
         match &self.model.assembly.bodies[body].place {
             Place::Section(of) => self.model.assembly.shafts[of.shaft].body,
@@ -209,8 +210,8 @@ impl Search<'_, '_> {
         }
     }
 
-    /// How far the body under a body's first outer race has gone, which takes the inner one along; where it is held, for a race that is
-    /// looked for there.
+    /// Displacement of the body under a body's first outer race, which moves the inner race along; of a fixed one,
+    /// zero.
     fn carried(&self, body: usize, here: &Evaluation) -> Five {
         let on_it = |bearing: &&StaticBearing| self.whole(bearing.mounts[0].body) == body;
         let bearing = self.model.assembly.bearings.iter().find(on_it);
@@ -239,8 +240,8 @@ impl Search<'_, '_> {
         gone
     }
 
-    /// Coordinates that are looked for, but for those of bodies in bores: a race may be loose in its bore, and
-    /// whether loads determine where another body is then means against it.
+    /// Unknown coordinates of bodies outside bores: a race may be loose in its bore, and the determinacy of other
+    /// bodies is relative to it.
     fn free_but_for_seats(&self) -> Vec<bool> {
         let mut free = self.free.clone();
         for (index, first, _) in self.model.loaded() {
@@ -285,19 +286,19 @@ impl Search<'_, '_> {
         Some((vector * length).component_div(&self.model.scale))
     }
 
-    /// Whether it stands where the stiffness against something is negative.
+    /// Returns whether the position is unstable.
     pub(crate) fn is_falling(&self, here: &Evaluation) -> bool {
         self.falling_direction(&self.modes(here)).is_some()
     }
 
-    /// Whether loads determine where everything is; `modes` are those of `here`.
+    /// Determinacy of the position; `modes` are those of `here`.
     pub(crate) fn determinacy(&self, here: &Evaluation, mut modes: Modes) -> Determinacy {
         if !self.model.assembly.seats.is_empty() {
             modes = self.modes_over(here, &self.free_but_for_seats());
         }
-        // The scale is that of the whole bearing, so that one lone free coordinate is judged too.
+        // The scale is that of the whole bearing, so that a single free coordinate is judged too.
         let scaled_diagonal = here.stiffest;
-        // An overlap of some ulps of the radius is no contact, and its stiffness none.
+        // An overlap of some ulps of the radius is no contact, without stiffness.
         let noise = self.model.bearings.iter().fold(0.0, |most: f64, of| {
             let contacts = &of.contacts;
             let rounding = 256.0 * f64::EPSILON * contacts.outer.centre_radius;

@@ -1,9 +1,9 @@
-//! Equilibria one after the other: a search that starts from what it found last, and what is left unbalanced of a
-//! race in its bore.
+//! Equilibria one after the other: a search that starts from its last solution, and the load residual of a race in its
+//! bore.
 //!
-//! Statics holds each ball at its azimuth by a cage that takes some 1e-5 of the load, since the inner
-//! race's normals lean a little out of the outer race's meridian planes. The cage rides on the
-//! outer race, so that what is put on the inner race arrives at the bore, whole.
+//! Statics holds each ball at its azimuth by cage forces, some 1e-5 of the load, since the inner race's normals are
+//! slightly out of the outer race's meridian planes. The cage is on the outer race, so that the load on the inner race
+//! arrives at the bore completely.
 
 use crate::assembly::static_lists::StaticAssembly;
 use crate::ch2_housing::bore_contact::Penalty;
@@ -18,24 +18,24 @@ use crate::solids::bore_equilibrium::{
 use crate::solids::condensation::CondensedBore;
 use nalgebra::{SVector, Vector3, Vector4};
 
-/// A search that starts from what it found last.
+/// A search that starts from its last solution.
 pub struct WarmStartedSearch<'b> {
     bores: Vec<BoreSearch<'b>>,
     options: StaticOptions,
     near: Option<Vec<SVector<f64, 5>>>,
 }
 
-/// What a search goes on from with the same bits.
+/// State from which a search continues with the same bits.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CourseMemory {
-    /// x, y, z (m), tilts (rad) of each body, once they have been found.
+    /// x, y, z (m), tilts (rad) of each body; `None` before the first solution.
     pub places: Option<Vec<[f64; 5]>>,
-    /// Nodes of each bore that touched, ascending.
+    /// Contact nodes of each bore, ascending.
     pub touching: Vec<Vec<usize>>,
 }
 
 impl<'b> WarmStartedSearch<'b> {
-    /// In these bores, in the order of the seats.
+    /// With these bores, in the order of the housing fits.
     pub fn new(
         bores: impl IntoIterator<Item = (&'b CondensedBore, Penalty)>,
     ) -> WarmStartedSearch<'b> {
@@ -44,22 +44,22 @@ impl<'b> WarmStartedSearch<'b> {
         WarmStartedSearch { bores: bores.collect(), options, near: None }
     }
 
-    /// In the bores of these seats.
+    /// With the bores of these housing fits.
     pub fn of(seats: &[QuasiStaticFit<'b>]) -> WarmStartedSearch<'b> {
         WarmStartedSearch::new(seats.iter().map(|seat| (seat.bore, seat.penalty)))
     }
 
-    /// With the contact in each bore as it was found last.
+    /// Bores with the contact of the last solution.
     pub fn bores(&self) -> &[BoreSearch<'b>] {
         &self.bores
     }
 
-    /// Of the nodes that touch, in all bores so far.
+    /// Changes of contact nodes in all bores so far.
     pub fn contact_changes(&self) -> usize {
         self.bores.iter().map(|bore| bore.changes).sum()
     }
 
-    /// Looks for the next one near these places of the bodies; cold without any.
+    /// Sets the start of the next search to these positions; `None` for a cold start.
     pub fn look_near(&mut self, places: Option<&[SVector<f64, 5>]>) {
         self.near = places.map(<[_]>::to_vec);
     }
@@ -70,10 +70,11 @@ impl<'b> WarmStartedSearch<'b> {
         CourseMemory { places, touching }
     }
 
-    /// Goes on from what a search in the same bores remembered.
+    /// Continues from the memory of a search in the same bores.
     ///
     /// # Errors
-    /// As [`BoreSearch::recall`].
+    ///
+    /// See [`BoreSearch::recall`].
     pub fn recall(&mut self, memory: &CourseMemory) -> Result<(), BoreError> {
         let places = memory.places.as_ref();
         self.near = places.map(|places| places.iter().map(|at| SVector::from(*at)).collect());
@@ -81,10 +82,11 @@ impl<'b> WarmStartedSearch<'b> {
         bores.try_for_each(|(bore, touching)| bore.recall(touching))
     }
 
-    /// The equilibrium of these lists, whose seats are in the bores of the search.
+    /// Equilibrium of these lists, with the bores of this search.
     ///
     /// # Errors
-    /// None from the last one nor from a cold start.
+    ///
+    /// No equilibrium from the last one nor from a cold start.
     pub fn solve(&mut self, still: &StaticAssembly<'b>) -> Result<AssemblySolution, StaticsError> {
         let mut look = |near: Option<&[SVector<f64, 5>]>| {
             solve_assembly_in(still, &mut self.bores, near, &self.options)
@@ -98,8 +100,7 @@ impl<'b> WarmStartedSearch<'b> {
     }
 }
 
-/// What balls put on the outer race at `race`, force and moment about its centre: their contacts, and what the cage
-/// takes to keep them at their azimuths.
+/// Load of the balls on the outer race at `race`, force and moment about its centre: contacts and cage forces.
 pub fn load_of_balls(
     [mut force, mut moment]: [Vector3<f64>; 2],
     balls: &[BallState],
@@ -115,10 +116,11 @@ pub fn load_of_balls(
     [force, moment]
 }
 
-/// Unbalanced load of a race in its bore over the load on it.
+/// Load residual of a race in its bore over its load.
 ///
 /// # Errors
-/// A load along its axis that nothing takes.
+///
+/// An axial load without support.
 pub fn unbalanced(
     fit: &Fit,
     on_race: &RaceLoad,

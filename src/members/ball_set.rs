@@ -1,5 +1,5 @@
-//! One bearing of an assembly with everything precomputed and room to work in: its balls against both
-//! races, each other and the cage.
+//! One bearing of an assembly with its constants and working memory: contacts of its balls with both races, each other
+//! and the cage.
 
 use crate::assembly::lists::Bearing;
 use crate::assembly::mount::Mount;
@@ -26,28 +26,28 @@ use crate::members::section_attachments::{SectionAttachment, kinematics_at_attac
 use nalgebra::Vector3;
 
 pub struct BallSet {
-    /// What each evaluation does.
+    /// Stages of each evaluation.
     pub steps: BearingSteps,
     pub layout: Layout,
     pub laws: ContactLaws,
     pub table: ContactTable,
     /// Damping factor of contacts with races, s/m; zero without damping.
     pub damping: f64,
-    /// Cosine and sine of each pocket's angle on its cage; they turn with it from where the balls started.
+    /// Cosine and sine of each pocket's angle on its cage, from the start of the balls; they rotate with the cage.
     pocket_angles: Vec<[f64; 2]>,
     /// Contacts of the cage with each ball, then with the guiding race at both ends.
     pub pockets: Vec<CageContact>,
     pub guides: [CageContact; 2],
-    /// Each ball with the next one; empty where they cannot meet.
+    /// Contact of each ball with the next one; empty if balls cannot meet.
     pub meetings: Vec<BallContact>,
     /// Inner and outer race, as last evaluated.
     pub races: [BodyKinematics; 2],
     pub cage: Option<BodyKinematics>,
     /// Sum of contact forces on each race and moment about its centre.
     pub on_races: [Wrench; 2],
-    /// On the cage, about its own centre.
+    /// Loads on the cage, about its own centre.
     pub on_cage: Wrench,
-    /// Why its dents have no law; nothing is to move then.
+    /// Error of its dents; there is no motion then.
     pub no_dents: Option<DentError>,
     ball_force: Vec<Vec3>,
     ball_moment: Vec<Vec3>,
@@ -117,7 +117,7 @@ impl BallSet {
         }
     }
 
-    /// Takes both races and the cage to where their bodies are.
+    /// Updates both races and the cage from their bodies.
     pub fn place(
         &mut self,
         bearing: &Bearing,
@@ -130,7 +130,7 @@ impl BallSet {
         self.cage = bearing.cage.as_ref().map(|cage| bodies[cage.body]);
     }
 
-    /// Loads on balls, races and cage where these have been placed; rates of the balls.
+    /// Loads on balls, races and cage at their present positions; rates of the balls.
     #[allow(clippy::too_many_arguments)]
     pub fn evaluate(
         &mut self,
@@ -171,7 +171,7 @@ impl BallSet {
         self.ball_rates(bearing, state, rates);
     }
 
-    /// Over blocks of [`LANES`] balls, component by component; those that only fill the last block stand still.
+    /// Over blocks of [`LANES`] balls, component by component; padding does not move.
     fn ball_rates(&self, bearing: &Bearing, state: &[f64], rates: &mut [f64]) {
         let layout = self.layout;
         for first in (0..layout.padded).step_by(LANES) {
@@ -228,7 +228,7 @@ impl BallSet {
             self.ball_force[ball] = add(self.ball_force[ball], force);
             let about_ball = add(cross(arm, force), moment);
             self.ball_moment[ball] = add(self.ball_moment[ball], about_ball);
-            // The race feels the opposite force at the same point.
+            // The race has the opposite force at the same point.
             let position = self.layout.ball_vector(state, POSITION, ball);
             let from_race = sub(position, self.races[side].motion.position);
             let race_arm = add(from_race, arm);
@@ -236,7 +236,7 @@ impl BallSet {
             loads.force = sub(loads.force, force);
             loads.moment = sub(loads.moment, add(cross(race_arm, force), moment));
         }
-        // What a dent pushes along the surface goes through the ball's centre.
+        // The tangential force of a dent acts through the ball's centre.
         for dented in &self.table.dented {
             let (side, ball) = self.layout.race_and_ball(dented.pair);
             self.ball_force[ball] = add(self.ball_force[ball], dented.aside);
@@ -246,8 +246,8 @@ impl BallSet {
         }
     }
 
-    /// Power of contact damping, W, ≤ 0. A contact that opens faster than its damping allows
-    /// carries no load, so that it is not an active one, but loses what it has stored.
+    /// Power of contact damping, W, ≤ 0. A contact that opens faster than its damping allows carries no load, so that
+    /// it is not active, but dissipates its stored energy.
     fn damping_power(&self) -> f64 {
         let mut power = 0.0;
         for (side, law) in self.laws.races.iter().enumerate() {
@@ -264,8 +264,8 @@ impl BallSet {
         power
     }
 
-    /// Contacts of each ball with the next one, where they can meet. Grooves keep the balls in their
-    /// order, so that neighbours in number are neighbours in azimuth.
+    /// Contacts of each ball with the next one, if they can meet. Balls keep their order in the grooves, so that
+    /// neighbours in number are neighbours in azimuth.
     fn add_ball_contacts(
         &mut self,
         bearing: &Bearing,
@@ -285,7 +285,7 @@ impl BallSet {
             let here = there;
             there = place(other);
             if are_apart(radius, here, there) {
-                // Nothing is written where nothing was.
+                // Nothing to clear.
                 if self.meetings[one].overlap != 0.0 {
                     self.meetings[one] = BallContact::default();
                 }
@@ -300,7 +300,7 @@ impl BallSet {
             self.meetings[one] = contact;
             self.ball_force[one] = sub(self.ball_force[one], contact.force);
             self.ball_force[other] = add(self.ball_force[other], contact.force);
-            // Arm and force are both the opposite: the same moment on either ball.
+            // Arm and force are both opposite: the moment is the same on either ball.
             let moment = cross(contact.arm, contact.force);
             self.ball_moment[one] = sub(self.ball_moment[one], moment);
             self.ball_moment[other] = sub(self.ball_moment[other], moment);
@@ -347,7 +347,7 @@ impl BallSet {
         ran.add(Stage::Pockets, self.layout.balls as u64);
     }
 
-    /// Contacts of both ends of the cage with the race that guides it.
+    /// Contacts of both ends of the cage with its guiding race.
     fn add_guide_contacts(
         &mut self,
         bearing: &Bearing,
@@ -375,7 +375,7 @@ fn cosine_and_sine(angle: f64) -> [f64; 2] {
     [cosine, sine]
 }
 
-/// Index of the race that guides a cage; `None` where balls do.
+/// Index of the guiding race of a cage; `None` for guidance by balls.
 pub fn guiding_side(guidance: Guidance) -> Option<usize> {
     match guidance {
         Guidance::InnerRace => Some(0),
@@ -384,7 +384,7 @@ pub fn guiding_side(guidance: Guidance) -> Option<usize> {
     }
 }
 
-/// Where a mount's loads act on its body: the same force, its moment about the body's centre.
+/// Loads at a mount on its body: the same force, and its moment about the body's centre.
 pub fn onto_body(
     mount: &Mount,
     race: &BodyKinematics,
@@ -398,7 +398,7 @@ pub fn onto_body(
     Wrench { force: loads.force, moment: add(loads.moment, cross(arm, loads.force)) }
 }
 
-/// Pairs of balls that lie next to each other.
+/// Number of pairs of neighbouring balls.
 pub fn neighbours(balls: usize) -> usize {
     if balls < 3 { balls.saturating_sub(1) } else { balls }
 }

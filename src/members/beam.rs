@@ -1,9 +1,9 @@
 //! A stepped, hollow shaft with discs as matrices over stations along its axis.
 //!
-//! X is the axis, Z up. The lateral coordinates of a station are y, z (m) and the turns about Y and Z (rad), right-handed:
-//! where the shaft only bends, turn_z = dy/dx and turn_y = −dz/dx. With spin Ω about X their motion is
-//! M q̈ + Ω G q̇ + K q = loads (N, N, N·m, N·m); stretch along the axis is a bar, apart from them. The same matrices come from
-//! tetrahedra that are condensed onto the stations ([`crate::solids::condensed_shaft`]), where a shaft has a mesh.
+//! X is the axis, Z up. The lateral coordinates of a station are y, z (m) and the rotations about Y and Z (rad),
+//! right-handed: in pure bending turn_z = dy/dx and turn_y = −dz/dx. With spin Ω about X the equation of motion is M q̈
+//! + Ω G q̇ + K q = loads (N, N, N·m, N·m); axial stretch is a separate bar. The same matrices follow from tetrahedra
+//! condensed onto the stations ([`crate::solids::condensed_shaft`]), if a shaft has a mesh.
 
 use crate::ch4_rotor::beam::{Element, NODES, PlaneMatrix, Section, ShearCoefficient, shortening};
 use crate::ch4_rotor::disc;
@@ -15,16 +15,16 @@ use thiserror::Error;
 /// Coordinates of a station, in this order: y, z (m), turn_y, turn_z (rad).
 pub const STATION: usize = 4;
 
-/// Elements of a shaft of which nothing else is said; more where places ask for stations.
+/// Default number of elements of a shaft; requested stations add to it.
 const ELEMENTS: f64 = 8.0;
 
-/// A length of one section and material.
+/// A length of constant section and material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeamSegment {
     /// m.
     pub length: f64,
     pub outer_diameter: f64,
-    /// m; zero where it is full.
+    /// m; zero for a solid section.
     pub inner_diameter: f64,
     /// kg/m³.
     pub density: f64,
@@ -51,10 +51,10 @@ pub struct BeamDisc {
 pub struct Beam {
     pub segments: Vec<BeamSegment>,
     pub discs: Vec<BeamDisc>,
-    /// No element is longer than this, m.
+    /// Longest element, m.
     pub longest_element: f64,
     pub shear_coefficient: ShearCoefficient,
-    /// Segments as tetrahedra in the place of beam theory.
+    /// Tetrahedra instead of beam theory for the segments.
     pub mesh: Option<ShaftMesh>,
 }
 
@@ -63,7 +63,7 @@ pub struct Beam {
 pub struct BeamMatrices {
     /// m along X.
     pub stations: Vec<f64>,
-    /// Over y, z, turn_y, turn_z of each station, one station after the other. kg, kg·m, kg·m².
+    /// Over y, z, turn_y, turn_z of each station, one station after the other: kg, kg·m, kg·m².
     pub mass: DMatrix<f64>,
     pub stiffness: DMatrix<f64>,
     /// Per rad/s of spin about X; skew-symmetric.
@@ -71,17 +71,17 @@ pub struct BeamMatrices {
     /// Over x of each station.
     pub axial_mass: DMatrix<f64>,
     pub axial_stiffness: DMatrix<f64>,
-    /// Over deflection and turn in one plane of all stations of an element, for each element: [`shortening`].
+    /// For each element, over deflection and rotation in one plane of its stations: see [`shortening`].
     pub shortening: Vec<[PlaneMatrix; NODES - 1]>,
 }
 
-/// Of bending in one plane, over the deflection (m) and the turn of the section towards it (rad) at each station; of a shaft
-/// of revolution both planes are alike.
+/// Bending in one plane, over the deflection (m) and the rotation of the section towards it (rad) at each station; both
+/// planes of an axisymmetric shaft are equal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneMatrices {
     pub mass: DMatrix<f64>,
     pub stiffness: DMatrix<f64>,
-    /// Inertia about the axis that the turns tilt: Ω times it couples the planes.
+    /// Axial inertia tilted by the rotations: times Ω it couples the planes.
     pub axial_inertia: DMatrix<f64>,
 }
 
@@ -89,27 +89,27 @@ pub struct PlaneMatrices {
 pub enum BeamError {
     #[error("a shaft has no segment")]
     NoSegment,
-    #[error("segment {number} of the shaft: its {what} is {value}, which has to be {wanted}")]
+    #[error("segment {number} of the shaft: its {what} is {value}; it must be {wanted}")]
     Segment { number: usize, what: &'static str, value: f64, wanted: &'static str },
-    #[error("disc {number} on the shaft: its {what} is {value}, which has to be {wanted}")]
+    #[error("disc {number} on the shaft: its {what} is {value}; it must be {wanted}")]
     Disc { number: usize, what: &'static str, value: f64, wanted: &'static str },
-    #[error("the longest element of a shaft is {0} m: it has to be a length")]
+    #[error("the longest element of a shaft is {0} m; it must be positive")]
     Element(f64),
-    #[error("the shear coefficient is {0}: it has to be above 0")]
+    #[error("the shear coefficient is {0}; it must be above 0")]
     ShearCoefficient(f64),
-    #[error("the place at {at} m is not on the shaft, which is from 0 to {length} m")]
+    #[error("the position {at} m is not on the shaft, which extends from 0 to {length} m")]
     OffShaft { at: f64, length: f64 },
-    #[error("the shaft would have {0} elements, at most 500 are solved")]
+    #[error("the shaft would have {0} elements; at most 500 are allowed")]
     Elements(f64),
     #[error(transparent)]
     Solid(#[from] SolidShaftError),
 }
 
-/// Above this a dense solution is not what one wants.
+/// Limit for dense matrices.
 const MOST_ELEMENTS: f64 = 500.0;
 
 impl Beam {
-    /// Without discs, in 8 elements of five stations or a few more, with Cowper's shear coefficient.
+    /// A shaft without discs, in 8 elements of five stations or a few more, with Cowper's shear coefficient.
     pub fn new(segments: Vec<BeamSegment>) -> Beam {
         let length: f64 = segments.iter().map(|segment| segment.length).sum();
         Beam {
@@ -121,17 +121,18 @@ impl Beam {
         }
     }
 
-    /// m.
+    /// Length, m.
     pub fn length(&self) -> f64 {
         self.segments.iter().map(|segment| segment.length).sum()
     }
 
-    /// The shaft in elements that end at its ends, its steps, its discs and the places `at` (m from its first end), and in
-    /// between where they would be too long; places nearer to each other than 1e-9 of the length are one. Loads and supports
-    /// belong to such places: stations within an element carry no jump of the shear force.
+    /// Matrices of the shaft. Elements end at its ends, its steps, its discs and the positions `at` (m from its first
+    /// end), and are subdivided to the longest element; positions within 1e-9 of the length are merged. Loads and
+    /// supports belong to such positions: stations within an element carry no jump of the shear force.
     ///
     /// # Errors
-    /// Values that no shaft has; places that are not on it.
+    ///
+    /// Invalid dimensions or materials; positions off the shaft.
     pub fn matrices(&self, at: &[f64]) -> Result<BeamMatrices, BeamError> {
         self.check()?;
         let (ends, segments) = self.elements(at)?;
@@ -152,7 +153,7 @@ impl Beam {
             }
         };
         for disc in &self.discs {
-            let station = matrices.station(disc.at).expect("discs have stations");
+            let station = matrices.station(disc.at).expect("each disc has a station");
             matrices.add_disc(station, disc);
         }
         Ok(matrices)
@@ -220,7 +221,7 @@ impl Beam {
         }
     }
 
-    /// Ends of all elements, and the segment that each element belongs to.
+    /// Ends of all elements, and the segment of each element.
     pub(crate) fn elements(&self, at: &[f64]) -> Result<(Vec<f64>, Vec<usize>), BeamError> {
         let length = self.length();
         let near = NEAR * length;
@@ -255,13 +256,14 @@ impl Beam {
     }
 }
 
-/// Places that are nearer to each other than this part of the shaft's length are one.
+/// Positions closer than this fraction of the shaft's length are merged.
 const NEAR: f64 = 1e-9;
 
-/// Coordinates of a station that bend in the plane of Y, and of Z; factors from (deflection, turn of the section towards it).
+/// Coordinates of a station for bending in the plane of Y, and of Z, and their factors (deflection, rotation towards
+/// it).
 const PLANES: [([usize; 2], [f64; 2]); 2] = [([0, 3], [1.0, 1.0]), ([1, 2], [1.0, -1.0])];
 
-/// Where the coordinates of `count` stations from the `first` on stand, and their signs, in each plane.
+/// Indices of the coordinates of `count` stations from `first` on, and their signs, in each plane.
 fn places(first: usize, count: usize) -> [Vec<(usize, f64)>; 2] {
     PLANES.map(|(coordinates, signs)| {
         let place = |i: usize| (STATION * (first + i / 2) + coordinates[i % 2], signs[i % 2]);
@@ -270,7 +272,7 @@ fn places(first: usize, count: usize) -> [Vec<(usize, f64)>; 2] {
 }
 
 impl BeamMatrices {
-    /// The station that stands at a place (m along X), if one does.
+    /// Index of the station at a position (m along X), if there is one.
     pub fn station(&self, at: f64) -> Option<usize> {
         station_at(&self.stations, at)
     }
@@ -294,7 +296,7 @@ impl BeamMatrices {
         }
     }
 
-    /// Of a shaft of revolution; `axial` are mass and stiffness along the axis.
+    /// Matrices of an axisymmetric shaft; `axial` are mass and stiffness along the axis.
     pub(crate) fn of_planes(
         stations: Vec<f64>,
         plane: &PlaneMatrices,
@@ -319,7 +321,7 @@ impl BeamMatrices {
             add(&mut self.mass, places, places, (1.0, &plane.mass));
             add(&mut self.stiffness, places, places, (1.0, &plane.stiffness));
         }
-        // ∫ 2ρI (s_y ṡ_z − s_z ṡ_y): the turns towards Y and Z of round sections.
+        // ∫ 2ρI (s_y ṡ_z − s_z ṡ_y), s the rotations of round sections towards Y and Z.
         add(&mut self.gyroscopic, &planes[0], &planes[1], (1.0, &plane.axial_inertia));
         add(&mut self.gyroscopic, &planes[1], &planes[0], (-1.0, &plane.axial_inertia));
     }
@@ -355,7 +357,7 @@ impl BeamMatrices {
         self.axial_mass[(station, station)] += disc.mass;
     }
 
-    /// Lateral rigid motions: along y, along z, turns about Y and about Z at x = `pivot` (m).
+    /// Lateral rigid motions: along y, along z, rotations about Y and about Z at x = `pivot` (m).
     pub fn rigid_motions(&self, pivot: f64) -> [DVector<f64>; 4] {
         let mut motions = [0; 4].map(|_| DVector::zeros(STATION * self.stations.len()));
         for (station, x) in self.stations.iter().enumerate() {
@@ -371,7 +373,7 @@ impl BeamMatrices {
     }
 }
 
-/// Of places in order, the one at `at`.
+/// Index of the station at `at` among sorted positions.
 pub(crate) fn station_at(stations: &[f64], at: f64) -> Option<usize> {
     let length = stations.last()? - stations.first()?;
     let next = stations.partition_point(|&x| x < at - NEAR * length);

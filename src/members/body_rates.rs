@@ -1,4 +1,4 @@
-//! Rates of one body of an assembly under the loads that have been summed on it.
+//! Rates of one body of an assembly under the sum of its loads.
 
 use crate::assembly::lists::{Body, Mobility};
 use crate::assembly::loads::Rotation;
@@ -15,7 +15,7 @@ use crate::members::unbalance::{bent_of, directions, turning_momentum};
 use crate::motion::system::System;
 
 impl System {
-    /// Rates of one body under the loads that have been summed.
+    /// Rates of one body under the sum of its loads.
     pub(crate) fn body_rates(
         &mut self,
         index: usize,
@@ -79,8 +79,8 @@ impl System {
     }
 }
 
-/// Rotating load and unbalance of a body, N, and that of an unbalance which works within it, as a torque turns it; `None` where
-/// neither is planned.
+/// Rotating load and centrifugal force of a body's unbalance, N, and the unbalance of a body driven by a torque; `None`
+/// if neither is planned.
 fn turning_force(
     body: &Body,
     now: &BodyKinematics,
@@ -99,7 +99,7 @@ fn turning_force(
     let mut within = [0.0; 3];
     if steps.unbalance {
         ran.add(Stage::Unbalance, 1);
-        // m e Ω² along the body's own Y, which turns with it, and m e dΩ/dt against its Z.
+        // m e Ω² along the body's own Y, which rotates with it, and m e dΩ/dt against its Z.
         let [outwards, forward] = directions(&now.state.orientation, 0.0);
         let speed = dot(now.state.spin, now.motion.axis);
         let centrifugal = body.unbalance * speed * speed;

@@ -1,52 +1,50 @@
-//! What joins two sections of bodies besides bearings, one `match` each: the load it puts on both ends with
-//! its energy and loss, and the directions in which it pushes back.
+//! Connections between two sections of bodies, one `match` each: wrench on both ends, energy, loss, and Jacobian rows.
 //!
-//! A section is a [`Mount`] and the axes of its body. Whatever the second end gets the first gets too, with the
-//! other sign and at the same point, so that momentum is kept; loads are the slopes of an energy, however far
-//! the ends have turned against each other.
+//! A section is a [`Mount`] and the axes of its body. Both ends get opposite forces at the same point, so that momentum
+//! is conserved; forces are the gradient of an energy for any rotation of the ends.
 
 use crate::assembly::mount::Mount;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, sub};
 use crate::members::rigid_body::{BodyKinematics, Wrench};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-/// A connection and what it joins.
+/// A connection and its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connection {
-    /// As messages name it.
+    /// Name in messages.
     pub name: String,
-    /// What its columns begin with; without it there are none.
+    /// Prefix of its columns; `None`: no columns.
     pub label: Option<String>,
-    /// The first end's axes are those in which the law is written.
+    /// The law is in the axes of the first end.
     pub ends: [Mount; 2],
     pub law: Law,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
-    /// Linear in the displacement of the second end against the first.
+    /// Linear in the displacement of the second end relative to the first.
     SpringDashpot(SpringDashpot),
     /// Against twist about the first end's axis alone.
     Torsion(Torsion),
 }
 
-/// Six springs and dashpots along and about the axes X, Y, Z of the first end, and beside them any number of
-/// springs that relax, as rubber does.
+/// Six springs and dashpots along and about the axes X, Y, Z of the first end, with any number of parallel Maxwell
+/// elements, as of rubber.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SpringDashpot {
-    /// N/m, N·m/rad; with Maxwell elements what is left when all have relaxed.
+    /// N/m, N·m/rad; with Maxwell elements the relaxed stiffness.
     pub stiffness: [f64; 6],
     /// N·s/m, N·m·s/rad.
     pub damping: [f64; 6],
     pub maxwell: Vec<MaxwellElement>,
-    /// Place of the second end in the first one's axes where no spring pulls, m.
+    /// Unloaded position of the second end in the axes of the first, m.
     pub rest: Vec3,
-    /// Thickness of the wall of a bushing, m: its sleeves move across each other by less.
+    /// Wall thickness of a bushing, m; limit of the lateral displacement of its sleeves.
     pub wall: Option<f64>,
 }
 
-/// Six springs, each in series with a dashpot: K e, where the elongation e (m, rad) of the spring follows the
-/// displacement q by de/dt = dq/dt − e/τ. What (2.13) does to a stress, of a whole bushing.
+/// Six springs, each in series with a dashpot: force K e, where the elongation e (m, rad) follows the displacement q by
+/// de/dt = dq/dt − e/τ. This is (2.13) for a whole bushing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MaxwellElement {
     /// N/m, N·m/rad.
@@ -55,9 +53,8 @@ pub struct MaxwellElement {
     pub relaxation_time: f64,
 }
 
-/// A spring and a dashpot against the twist of the second end about the first one's X axis; bending and all
-/// displacements are free. Twist counts up to half a turn either way, and needs axes that do not point
-/// against each other.
+/// A spring and a dashpot against the twist of the second end about the X axis of the first; bending and displacements
+/// are free. Twist is measured up to half a turn either way, and needs axes that are not opposite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Torsion {
     /// N·m/rad.
@@ -66,35 +63,34 @@ pub struct Torsion {
     pub damping: f64,
 }
 
-/// What a connection does at one instant.
+/// Forces of a connection at one instant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpringForces {
-    /// On each end, about its own centre.
+    /// Wrench on each end, about its own centre.
     pub on: [Wrench; 2],
     /// Stored, J.
     pub energy: f64,
     /// Power of its dashpots, W, ≤ 0.
     pub loss: f64,
-    /// Rates of the six displacements, m/s and rad/s, where there are Maxwell elements that follow them.
+    /// Rates of the six displacements, m/s and rad/s, for Maxwell elements.
     pub rates: [f64; 6],
 }
 
-/// One direction in which a connection pushes back.
+/// A direction with stiffness or damping.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Row {
-    /// Linear and turning part of the relative motion that a unit of each end's velocity makes, about each
-    /// end's own centre, inertial axes.
+    /// Linear and angular relative motion per unit velocity of each end, about each end's own centre, inertial axes.
     pub on: [[Vec3; 2]; 2],
     pub stiffness: f64,
     pub damping: f64,
 }
 
-/// Rows that a connection can have.
+/// Largest number of rows of a connection.
 pub const ROWS: usize = 6;
 
 impl Connection {
-    /// Loads on both ends where they are, the springs of its Maxwell elements `elongated` by so much (m, rad; six
-    /// for each element), or relaxed where nothing is given.
+    /// Forces on both ends, with the elongations of its Maxwell elements (m, rad; six for each element); empty for
+    /// relaxed elements.
     pub fn pull(&self, ends: [&BodyKinematics; 2], elongated: &[f64]) -> SpringForces {
         match &self.law {
             Law::SpringDashpot(law) => spring_dashpot(law, ends, elongated),
@@ -102,8 +98,8 @@ impl Connection {
         }
     }
 
-    /// Directions, stiffness and damping of what pushes back, for the matrix of a linearly implicit
-    /// step and of statics. Exact at rest; turned ends leave out the curvature of large turns.
+    /// Directions, stiffness and damping, for the matrix of a linearly implicit step and of statics. Exact at rest; the
+    /// curvature of large rotations is omitted.
     pub fn rows(&self, ends: [&BodyKinematics; 2]) -> [Row; ROWS] {
         match &self.law {
             Law::SpringDashpot(law) => spring_dashpot_rows(law, ends),
@@ -111,8 +107,8 @@ impl Connection {
         }
     }
 
-    /// How far its springs are stretched and turned at most, m and rad, of directions that have a spring, and how far one end is
-    /// across the axis from its place, m.
+    /// Largest elongation and rotation of its springs, m and rad, over directions with a spring, and lateral
+    /// displacement of one end, m.
     pub fn extension(&self, ends: [&BodyKinematics; 2]) -> [f64; 3] {
         match &self.law {
             Law::SpringDashpot(law) => {
@@ -121,7 +117,7 @@ impl Connection {
                 let turn = turn_between(ends).0;
                 let far = |first: usize, gone: [f64; 3]| {
                     let held = (0..3).filter(|i| law.stiffness[first + i] != 0.0);
-                    // NaN stays.
+                    // NaN is kept.
                     held.map(|i| gone[i].abs()).fold(0.0, |most, one| {
                         if one <= most || most.is_nan() { most } else { one }
                     })
@@ -136,7 +132,7 @@ impl Connection {
         }
     }
 
-    /// Thickness of the wall of a bushing, m; without end of others.
+    /// Wall thickness of a bushing, m; infinite for others.
     pub fn wall(&self) -> f64 {
         match &self.law {
             Law::SpringDashpot(law) => law.wall.unwrap_or(f64::INFINITY),
@@ -144,7 +140,7 @@ impl Connection {
         }
     }
 
-    /// Those that it has.
+    /// Its Maxwell elements.
     pub fn maxwell(&self) -> &[MaxwellElement] {
         match &self.law {
             Law::SpringDashpot(law) => &law.maxwell,
@@ -152,7 +148,7 @@ impl Connection {
         }
     }
 
-    /// Whether its springs, dashpots or Maxwell elements along the first end's Y differ from those along Z, or about them.
+    /// Returns whether its springs, dashpots or Maxwell elements differ between Y and Z, along or about them.
     pub fn is_uneven(&self) -> bool {
         match &self.law {
             Law::SpringDashpot(law) => {
@@ -165,7 +161,7 @@ impl Connection {
         }
     }
 
-    /// Whether nothing of it pushes or brakes, so that it may be left out.
+    /// Returns whether it has neither stiffness nor damping and may be left out.
     pub fn is_void(&self) -> bool {
         match &self.law {
             Law::SpringDashpot(law) => {
@@ -177,16 +173,17 @@ impl Connection {
     }
 }
 
-/// Whether values along and about the axes X, Y, Z differ between Y and Z.
+/// Returns whether values along or about X, Y, Z differ between Y and Z.
 pub fn uneven(of: &[f64; 6]) -> bool {
     of[1] != of[2] || of[4] != of[5]
 }
 
-/// How the second end is turned against the first, in the first one's axes, rad, and how that changes with an angular
+/// Rotation of the second end relative to the first, in the axes of the first, rad, and its derivative by an angular
 /// velocity in these axes.
 ///
-/// Turns about Y and Z are those by the shortest way that take the first axis X to the second (its length the angle between
-/// them), the turn about X is the [`twist`] that is left: a shaft that spins turns about X alone, however far.
+/// The components about Y and Z are the smallest rotation that takes the first axis X to the second (its length the
+/// angle between them); the component about X is the remaining [`twist`]: a spinning shaft rotates about X alone, by
+/// any angle.
 fn turn_between(ends: [&BodyKinematics; 2]) -> (Vector3<f64>, Matrix3<f64>) {
     let [first, second] = ends.map(|end| end.state.orientation);
     let (angle, along) = twist_in_first(first.inverse() * second);
@@ -195,13 +192,13 @@ fn turn_between(ends: [&BodyKinematics; 2]) -> (Vector3<f64>, Matrix3<f64>) {
     let square = y * y + z * z;
     let sine = square.sqrt();
     let tilt = libm::atan2(sine, x);
-    // θ/sin θ, and its slope over θ, over sin θ; series serve small tilts.
+    // θ/sin θ, and its slope over θ, over sin θ; by series for small tilts.
     let (factor, slope) = if tilt < 1e-2 {
         (1.0 + square / 6.0 * (1.0 + 0.45 * square), (1.0 + 0.4 * square) / 3.0)
     } else {
         (tilt / sine, (sine - tilt * x) / (sine * square))
     };
-    // Of the axis under an angular velocity.
+    // Rate of the axis under an angular velocity.
     let swept = -axis.cross_matrix();
     let [by_x, by_y, by_z] = [0, 1, 2].map(|i| swept.row(i).into_owned());
     let grows = ((by_y * y + by_z * z) * x - by_x * square) * slope;
@@ -209,13 +206,13 @@ fn turn_between(ends: [&BodyKinematics; 2]) -> (Vector3<f64>, Matrix3<f64>) {
     (Vector3::new(angle, -factor * z, factor * y), Matrix3::from_rows(&rates))
 }
 
-/// Axes of the first end in inertial ones.
+/// Axes of the first end in inertial axes.
 fn axes(ends: [&BodyKinematics; 2]) -> [Vec3; 3] {
     let turn = ends[0].state.orientation;
     [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| (turn * axis).into())
 }
 
-/// Rate of the second end's place in the first one's axes, and of their turn, all in these axes.
+/// Rates of the second end's position and rotation relative to the first, in the axes of the first.
 fn rates(ends: [&BodyKinematics; 2], axes: &[Vec3; 3]) -> (Vec3, Vector3<f64>) {
     let [first, second] = ends.map(|end| &end.motion);
     let arm = sub(second.position, first.position);
@@ -282,15 +279,15 @@ fn spring_dashpot_rows(law: &SpringDashpot, ends: [&BodyKinematics; 2]) -> [Row;
     })
 }
 
-/// Twist of the second end about the first one's axis, rad, and the direction (inertial axes) along which
-/// relative spin makes it.
+/// Twist of the second end about the first one's axis, rad, and the direction (inertial axes) of the relative spin that
+/// increases it.
 fn twist(ends: [&BodyKinematics; 2]) -> (f64, Vec3) {
     let [first, second] = ends.map(|end| end.state.orientation);
     let (angle, along) = twist_in_first(first.inverse() * second);
     (angle, (first * along).into())
 }
 
-/// The same of a relative rotation q, the direction in the first end's axes: φ = 2 atan(q_x/q_w).
+/// The same for a relative rotation q, with the direction in the first end's axes: φ = 2 atan(q_x/q_w).
 fn twist_in_first(q: UnitQuaternion<f64>) -> (f64, Vector3<f64>) {
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
     let size = w * w + x * x;

@@ -1,5 +1,5 @@
-//! Traction of the loaded ball–race contacts of one evaluation, contact by contact or over blocks of them.
-//! Loads and places are those that [`detection`](crate::members::contacts) has found.
+//! Traction of the loaded ball–race contacts of one evaluation, contact by contact or over blocks. Loads and positions
+//! are those of [`detection`](crate::members::contacts).
 
 use crate::assembly::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::RaceContact;
@@ -15,7 +15,7 @@ use crate::kinematics::vec3::Vec3;
 use crate::members::contacts::{ContactLaws, ContactTable, Want};
 use crate::members::rigid_body::BodyKinematics;
 
-/// Motion of ball and race at a pair.
+/// Velocities of ball and race at a pair.
 #[inline(always)]
 fn ball_motion(layout: &Layout, state: &[f64], ball: usize) -> Motion {
     Motion {
@@ -30,7 +30,7 @@ fn race_motion(now: &BodyKinematics) -> Motion {
     Motion { position: now.motion.position, velocity: now.motion.velocity, spin: now.motion.spin }
 }
 
-/// Distance from the ball centre to the contact point: the overlap is shared in halves.
+/// Distance from the ball centre to the contact point: half of the overlap is the ball's.
 #[inline(always)]
 fn lever(laws: &ContactLaws, overlap: f64) -> f64 {
     laws.ball_radius - 0.5 * overlap
@@ -72,7 +72,7 @@ pub(crate) fn traction_plain(
     want: Want,
     table: &mut ContactTable,
 ) {
-    // Pair by pair: `map` hands an array of so many numbers on through several copies.
+    // Pair by pair: `map` would copy the array several times.
     let motions = [race_motion(races[0]), race_motion(races[1])];
     let axes = [races[0].motion.axis, races[1].motion.axis];
     for &pair in &table.active {
@@ -98,8 +98,7 @@ pub(crate) fn traction_lanes<const SLOPES: bool>(
     races: [&BodyKinematics; 2],
     table: &mut ContactTable,
 ) {
-    // One instance of the loop for each law, so that nothing is decided inside it. Without slopes
-    // the compiler drops what only they need.
+    // One instance of the loop for each law, without branches inside. Without slopes the compiler drops their terms.
     match &laws.traction {
         TractionLaw::None => {}
         TractionLaw::SlideToRoll { curve, entrainment_floor } => {
@@ -134,8 +133,8 @@ pub(crate) fn traction_lanes<const SLOPES: bool>(
     }
 }
 
-/// `friction` gives the resistance of a slice at the square of a sliding speed, with its share of the load and what `prepare` made
-/// of the entrainment speed; `slopes` its steepness of the same.
+/// `friction` returns the resistance of a slice from the squared sliding speed, its share of the load and the result of
+/// `prepare` for the entrainment speed; `slopes` returns its derivative.
 #[inline(always)]
 fn lanes_of<const SLOPES: bool>(
     laws: &ContactLaws,
@@ -149,7 +148,7 @@ fn lanes_of<const SLOPES: bool>(
         impl Fn(f64, f64, f64) -> Steepness + Copy,
     ),
 ) {
-    // Pair by pair: `map` hands an array of so many numbers on through several copies.
+    // Pair by pair: `map` would copy the array several times.
     let motions = [race_motion(races[0]), race_motion(races[1])];
     let axes = [races[0].motion.axis, races[1].motion.axis];
     let ContactTable { contact, load, traction, sliding, slope, active, .. } = table;
@@ -157,7 +156,7 @@ fn lanes_of<const SLOPES: bool>(
         let mut slip = [[0.0; LANES]; 2];
         let mut spin = [0.0; LANES];
         let mut patches = Patches::default();
-        // What the law needs of the entrainment speed; lanes without a pair slide nowhere.
+        // Values of the law that depend on the entrainment speed; lanes without a pair do not slide.
         let mut rolling = [1.0; LANES];
         for (l, &pair) in block.iter().enumerate() {
             let (race, _) = layout.race_and_ball(pair);
@@ -196,7 +195,7 @@ impl Patches {
     #[inline(always)]
     fn put(&mut self, lane: usize, across: bool, patch: Patch) {
         self.semi_major[lane] = patch.semi_major;
-        // A division that only points beside the middle of a slice need.
+        // A division needed only by points beside the middle of a slice.
         if across {
             self.semi_minor[lane] = patch.semi_minor;
         }
@@ -221,7 +220,7 @@ fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
         impl Fn(f64, f64, f64) -> Steepness + Copy,
     ),
 ) -> ([SliceSum; LANES], [TractionSlope; LANES]) {
-    // One array for each sum: an array of arrays would keep the loop from becoming vector code.
+    // One array for each sum: an array of arrays prevents vectorisation.
     let mut rolling = [0.0; LANES];
     let mut transverse = [0.0; LANES];
     let mut moment = [0.0; LANES];

@@ -1,9 +1,7 @@
-//! Ball–race contacts of one evaluation: detection for every pair, then traction for the loaded
-//! ones only.
+//! Ball–race contacts of one evaluation: detection for every pair, then traction for the loaded ones only.
 //!
-//! Two drivers call the same scalar laws: [`Kernel::Scalar`] contact by contact, [`Kernel::Simd`]
-//! over blocks of [`LANES`] contacts. The order of operations within a contact is the same, so the
-//! bits are too.
+//! Two kernels call the same scalar laws: [`Kernel::Scalar`] contact by contact, [`Kernel::Simd`] over blocks of
+//! [`LANES`] contacts. The order of operations within a contact is the same, so the bits are too.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
@@ -28,7 +26,7 @@ pub struct ContactLaws {
     pub ball_radius: f64,
     pub traction: TractionLaw,
     pub slices: Slices,
-    /// In either race.
+    /// Dents in either race.
     pub dents: Vec<DentOnRace>,
 }
 
@@ -41,11 +39,11 @@ pub struct ContactTable {
     /// Traction on the ball.
     pub traction: Vec<TractionForce>,
     pub sliding: Vec<Sliding>,
-    /// How traction falls with more sliding, where it was asked for.
+    /// Slope of traction by sliding, if requested.
     pub slope: Vec<TractionSlope>,
     /// Loaded pairs, in order.
     pub active: Vec<usize>,
-    /// Pairs that a dent has changed, in order; their overlap is w of [`dents`].
+    /// Pairs changed by a dent, in order; their overlap is w of [`dents`].
     pub dented: Vec<DentedPair>,
 }
 
@@ -63,13 +61,13 @@ impl ContactTable {
         }
     }
 
-    /// What a dent has made of a pair.
+    /// The pair if a dent has changed it.
     pub fn dented(&self, pair: usize) -> Option<&DentedPair> {
         self.dented.iter().find(|dented| dented.pair == pair)
     }
 }
 
-/// Work done, for tests that pin it.
+/// Work counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     pub evaluations: u64,
@@ -78,16 +76,16 @@ pub struct Work {
     pub slices: u64,
     pub pocket_tests: u64,
     pub guide_tests: u64,
-    /// Of neighbouring balls.
+    /// Tests of neighbouring balls.
     pub ball_tests: u64,
-    /// Of the matrix of a linearly implicit step.
+    /// Factorisations of the matrix of a linearly implicit step.
     pub factorisations: u64,
-    /// Attempts that the error control threw away.
+    /// Attempts rejected by the error control.
     pub rejected_steps: u64,
 }
 
 impl Work {
-    /// Every count in one order, as files keep them.
+    /// All counts in the order of files.
     pub fn counts(&mut self) -> [&mut u64; 9] {
         [
             &mut self.evaluations,
@@ -103,21 +101,21 @@ impl Work {
     }
 }
 
-/// Whether the slopes of traction are wanted beside the forces.
+/// Slopes of traction in addition to forces, or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Want {
     Forces,
     ForcesAndSlopes,
 }
 
-/// Which driver runs the contacts.
+/// Kernel of the contact loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     Scalar,
     Simd,
 }
 
-/// What the contacts of a bearing are found from.
+/// Inputs of the contacts of a bearing.
 #[derive(Clone, Copy)]
 pub struct Set<'s> {
     pub laws: &'s ContactLaws,
@@ -177,7 +175,7 @@ pub fn evaluate(
     }
 }
 
-/// The load of a pair; without damping the factor is not looked at.
+/// Load of a pair; the damping factor is not evaluated without damping.
 #[inline(always)]
 fn load_of<const DAMPED: bool>(law: &RaceLaw, contact: &RaceContact, factor: f64) -> f64 {
     if DAMPED {
@@ -187,7 +185,7 @@ fn load_of<const DAMPED: bool>(law: &RaceLaw, contact: &RaceContact, factor: f64
     }
 }
 
-/// Pairs that have been looked at, and those whose loads were damped.
+/// Counts tested pairs, and pairs with damped loads.
 fn count_pairs<const DAMPED: bool>(layout: &Layout, ran: &mut Counts) {
     let pairs = 2 * layout.balls as u64;
     ran.add(Stage::DistanceTest, pairs);

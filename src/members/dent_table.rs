@@ -1,4 +1,4 @@
-//! The table of a dent's contact law, from a half-space pressed by the ball at many approaches and places.
+//! Table of a dent's contact law, from a half-space loaded by the ball at many approaches and positions.
 
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch3_bushing::dent::{DentShape, DentTable, spline};
@@ -6,56 +6,56 @@ use crate::members::half_space::{Grid, Influence, Pressed, press};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
 
-/// How fine a table is.
+/// Resolution of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fineness {
-    /// Cells of the half-space across the contact, either way; even.
+    /// Cells of the half-space across the contact in each direction; even.
     pub cells: usize,
     /// Intervals of the table in q and σ.
     pub intervals: [usize; 2],
 }
 
 impl Fineness {
-    /// What runs use: forces of the dents of section 3.4.4 within 1 % of much finer ones.
+    /// Resolution of runs: forces of the dents of section 3.4.4 within 1 % of much finer tables.
     pub const USUAL: Fineness = Fineness { cells: 40, intervals: [28, 16] };
-    /// A shoulder of a micrometre carries before the surface around it does, on fewer cells: forty leave 2 % of a load that
-    /// such a dent changes by 2 %, eighty 0.2 %.
+    /// A shoulder of a micrometre carries load before the surface around it, on fewer cells: forty give an error of 2 %
+    /// of a load that such a dent changes by 2 %, eighty 0.2 %.
     pub const SHOULDERED: Fineness = Fineness { cells: 80, ..Fineness::USUAL };
 
-    /// What a run takes for a dent of this shape.
+    /// Resolution for a dent of this shape.
     pub fn of(shape: &DentShape) -> Fineness {
         if shape.shoulder_height > 0.0 { Fineness::SHOULDERED } else { Fineness::USUAL }
     }
 
-    /// Solves of the half-space, at most.
+    /// Largest number of half-space solutions.
     pub fn solves(&self) -> usize {
         2 * self.intervals[0] * (self.intervals[1] + 1) + 2
     }
 }
 
-/// Pressure of the undented contact up to which a table reaches, Pa: the static capacity of ball bearings (ISO 76).
+/// Largest pressure of the undented contact in a table, Pa: the static capacity of ball bearings (ISO 76).
 pub const LARGEST_PRESSURE: f64 = 4.2e9;
-/// Gaps left in contact, in parts of the largest overclosure.
+/// Tolerance of the gap in contact, in parts of the largest overclosure.
 const CLOSED: f64 = 1e-5;
-/// Points across a dent among which the first to touch is looked for.
+/// Points across a dent in the search for the first contact.
 const SEARCHED: usize = 80;
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DentError {
     #[error(
-        "the contact over a dent of {diameter} m at an approach of {approach} m does not come to rest; \
-         a less steep dent may"
+        "the contact over a dent of {diameter} m at an approach of {approach} m does not converge; \
+          try a less steep dent"
     )]
     NoContact { diameter: f64, approach: f64 },
 }
 
-/// A ball over a dented race: what a table is made of.
+/// A ball over a dented race.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DentedContact {
     pub shape: DentShape,
     /// Relative radii in the rolling direction and across the groove, m.
     pub radii: [f64; 2],
-    /// Largest approach of interest, m.
+    /// Largest approach of the table, m.
     pub deepest: f64,
 }
 
@@ -71,7 +71,7 @@ impl DentedContact {
         }
     }
 
-    /// Gap at a point when the surfaces just touch without the dent, m.
+    /// Gap at a point, m, when the surfaces just touch without the dent.
     fn undented(&self, [x, y]: [f64; 2]) -> f64 {
         0.5 * (x * x / self.radii[0] + y * y / self.radii[1])
     }
@@ -81,7 +81,7 @@ impl DentedContact {
         self.undented([x, y]) + self.shape.depth_at(r)
     }
 
-    /// Smallest gap, m: how far the ball drops before it touches anything.
+    /// Smallest gap, m: displacement of the ball before it touches anything.
     fn free_drop(&self, dent: [f64; 2]) -> f64 {
         let reach = self.shape.reach();
         let start = if libm::hypot(dent[0], dent[1]) >= reach { 0.0 } else { f64::INFINITY };
@@ -95,12 +95,12 @@ impl DentedContact {
     }
 }
 
-/// A half-space for all approaches of a contact with a dent somewhere on one of its two axes: its grid grows with
-/// what the ball overlaps, and the side of that axis is calculated that the other one mirrors.
+/// A half-space for all approaches of a contact with a dent on one of its two axes: its grid grows with the overlap,
+/// and is mirrored at that axis.
 pub struct Bed {
     contact: DentedContact,
     influence: Influence,
-    /// Its x is the axis with the dent.
+    /// Its x is along the axis with the dent.
     unit: Grid,
     /// 0 for the rolling direction, 1 for the one across the groove.
     direction: usize,
@@ -110,7 +110,8 @@ pub struct Bed {
 
 impl Bed {
     /// # Errors
-    /// An undented contact that the half-space does not find.
+    ///
+    /// An undented contact that does not converge.
     pub fn new(contact: DentedContact, cells: usize, direction: usize) -> Result<Bed, DentError> {
         let spread = contact.spread();
         let [x, y] = [spread[direction], spread[1 - direction]];
@@ -118,17 +119,18 @@ impl Bed {
         let unit = Grid { nx: cells, ny: cells / 2, hx: size(x), hy: size(y), mirrored: true };
         let influence = Influence::new(unit);
         let mut bed = Bed { contact, influence, unit, direction, undented: 0.0 };
-        // Any approach does: all are similar.
+        // All approaches are similar.
         let approach = contact.deepest;
         bed.undented = bed.solve(0.0, approach, None, None)?.energy / five_halves(approach);
         Ok(bed)
     }
 
-    /// The contact at an approach (m) with a dent so far along the axis (m), or without one. Cells cover what may touch
-    /// where the highest point stands `shoulder` (m) above the surface.
+    /// Contact at an approach (m) with a dent at this position along the axis (m), or without one. Cells cover all
+    /// possible contact of a highest point `shoulder` (m) above the surface.
     ///
     /// # Errors
-    /// Conjugate gradients that do not come to rest.
+    ///
+    /// Conjugate gradients that do not converge.
     pub fn solve(
         &self,
         shoulder: f64,
@@ -149,7 +151,7 @@ impl Bed {
             .ok_or(DentError::NoContact { diameter: self.contact.shape.diameter, approach })
     }
 
-    /// The approach at which the undented contact holds `energy`, m.
+    /// Approach of the undented contact with this `energy`, m.
     fn equivalent(&self, energy: f64) -> f64 {
         libm::pow(energy / self.undented, 0.4)
     }
@@ -159,14 +161,15 @@ fn five_halves(approach: f64) -> f64 {
     approach * approach * approach.sqrt()
 }
 
-/// Tables that [`usual_table`] remembers.
+/// Number of tables kept by [`usual_table`].
 const REMEMBERED: usize = 8;
 
-/// The table that runs use. It follows from the contact alone and takes seconds: the latest are remembered, for a plan asks
-/// several times, and a sweep at every point. Who asks for one that is being made waits for it.
+/// The table of runs. It depends on the contact alone and takes seconds: the latest are kept, since plans and the
+/// points of a sweep need it repeatedly. A table that is being computed is waited for.
 ///
 /// # Errors
-/// As [`dent_table`].
+///
+/// See [`dent_table`].
 pub fn usual_table(contact: &DentedContact) -> Result<Arc<DentTable>, DentError> {
     type Made = OnceLock<Result<Arc<DentTable>, DentError>>;
     static LATEST: Mutex<Vec<(DentedContact, Arc<Made>)>> = Mutex::new(Vec::new());
@@ -184,7 +187,8 @@ pub fn usual_table(contact: &DentedContact) -> Result<Arc<DentTable>, DentError>
 /// Table of a dent's law.
 ///
 /// # Errors
-/// A contact that does not come to rest.
+///
+/// A contact that does not converge.
 pub fn dent_table(contact: &DentedContact, fineness: Fineness) -> Result<DentTable, DentError> {
     let bed = |direction| Bed::new(*contact, fineness.cells, direction);
     let beds = [bed(0)?, bed(1)?];
@@ -197,7 +201,7 @@ pub fn dent_table(contact: &DentedContact, fineness: Fineness) -> Result<DentTab
         let q = deepest * row as f64 / rows as f64;
         let approach = q * q - shoulder;
         for (direction, (bed, values)) in beds.iter().zip(&mut values).enumerate() {
-            // Cells are too coarse for the last digits: the undented contact among them is taken for the truth.
+            // The undented contact on the same cells is the reference, so that errors of the grid cancel.
             let flat = if approach > 0.0 {
                 let found = bed.solve(shoulder, approach, None, None)?;
                 bed.equivalent(found.energy) / approach

@@ -1,9 +1,9 @@
-//! Contacts of balls with dented races: the law of (3.20) where a ball is near a dent.
+//! Contacts of balls with dented races: the law of (3.20) for a ball near a dent.
 //!
-//! Without friction all forces of such a contact are slopes of its energy U(δ, s, y): the normal one, and one along the surface
-//! which a wall of the dent pushes with. Both go through the ball's centre, U depends on where that is seen from the race, so that
-//! neither momentum nor energy is made. What is left of the contact is told as Hertz's with the same energy: its
-//! overlap is w = δ − Δ from here on.
+//! Without friction all forces of such a contact are the gradient of its energy U(δ, s, y): the normal force, and a
+//! tangential force of the dent's wall. Both act through the ball's centre, and U depends on its position relative to
+//! the race, so that momentum and energy are conserved. The contact is treated from here on as that of Hertz with the
+//! same energy: its overlap is w = δ − Δ.
 
 use crate::assembly::lists::Bearing;
 use crate::assembly::plan::Stage;
@@ -32,22 +32,23 @@ pub struct DentOnRace {
     groove_radius: f64,
 }
 
-/// A contact that a dent has changed.
+/// A contact changed by a dent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DentedPair {
     pub pair: usize,
     /// ∂U/∂δ, N, before damping.
     pub elastic: f64,
-    /// ∂²U/∂δ², N/m, where slopes are wanted; never negative.
+    /// ∂²U/∂δ², N/m, if slopes are requested; never negative.
     pub stiffness: f64,
-    /// What pushes the ball along the surface, N, inertial axes.
+    /// Tangential force on the ball, N, inertial axes.
     pub aside: Vec3,
 }
 
-/// Laws of the dents of a bearing; those that vanish are none. Dents alike share a table.
+/// Laws of the dents of a bearing, without vanishing ones. Equal dents share a table.
 ///
 /// # Errors
-/// A dent over which no contact comes to rest.
+///
+/// A dent without a converged contact.
 pub fn dents(bearing: &Bearing) -> Result<Vec<DentOnRace>, DentError> {
     let real = bearing.dents.iter().filter(|dent| !dent.shape.vanishes());
     real.map(|dent| {
@@ -76,16 +77,17 @@ impl DentOnRace {
     }
 }
 
-/// A ball as a race sees it.
+/// A ball relative to a race.
 struct Seen {
-    /// Parts of the way from the race's axis to the ball along its own Y and Z, m.
+    /// Direction from the race's axis to the ball along its own Y and Z, unit vector.
     across: [f64; 2],
-    /// Around the groove from its bottom towards X, rad.
+    /// Angle around the groove from its bottom towards X, rad.
     groove_angle: f64,
 }
 
 impl Seen {
-    /// From a dent along the rolling direction and across the groove, m; `None` on the other side of the race.
+    /// Position relative to a dent along the rolling direction and across the groove, m; `None` on the other side of
+    /// the race.
     fn from(&self, dent: &DentOnRace) -> Option<[f64; 2]> {
         let ([y, z], [cos, sin]) = (self.across, dent.turn);
         let near = y * cos + z * sin;
@@ -98,7 +100,7 @@ impl Seen {
     }
 }
 
-/// Sum of what dents do at an approach, and how far each length goes with a move of the ball.
+/// Sum of the dents at an approach, and the derivatives of its lengths by the ball's position.
 fn sum_of(
     dents: &[DentOnRace],
     side: usize,
@@ -119,14 +121,13 @@ fn sum_of(
     sum
 }
 
-/// Of what a dent reaches to either side, the part that a ball may go on by within a step: four steps and their stages
-/// see it pass.
+/// Fraction of a dent's extent that a ball may move in a step: four steps and their stages resolve the dent.
 const PART_OF_REACH: f64 = 0.5;
 
-/// The longest step, s, in which no ball of `set` goes by a dent unseen, from the races that were evaluated last.
+/// Longest step, s, in which every ball of `set` meets the dents on its path, from the races as last evaluated.
 ///
-/// Steps that follow from an estimated error know nothing of what lies between their stages: where all else stands still in
-/// the frames of the stages they grow until a ball is past a dent within one.
+/// Error control does not see what is between the stages: in smooth rolling steps grow until a ball passes a dent
+/// within one.
 pub(crate) fn longest_step(set: &BallSet, state: &[f64]) -> f64 {
     let mut longest = f64::INFINITY;
     for dent in &set.laws.dents {
@@ -141,7 +142,7 @@ pub(crate) fn longest_step(set: &BallSet, state: &[f64]) -> f64 {
             let orbit = dot(motion.axis, cross(arm, velocity)) / (y * y + z * z);
             let speed = dent.radius * (orbit - dot(motion.axis, race.spin)).abs();
             let away = dent.radius * libm::atan2(z * cos - y * sin, y * cos + z * sin).abs();
-            // The contact's own length counts: that of the highest pressure that the table knows.
+            // The contact's own length counts, at the highest pressure of the table.
             let felt = dent.table.reach + dent.table.spread[0] * dent.table.deepest;
             let free = (away - felt).max(0.0);
             longest = longest.min((free + PART_OF_REACH * dent.table.reach) / speed);
@@ -150,10 +151,10 @@ pub(crate) fn longest_step(set: &BallSet, state: &[f64]) -> f64 {
     longest
 }
 
-/// Step of the approach, in parts of it, whose differences make the stiffness.
+/// Relative difference of the approach for the stiffness.
 const NEARBY: f64 = 1e-4;
 
-/// Takes dents into the contacts that have been detected.
+/// Includes dents in the contacts found.
 pub(crate) fn apply(
     set: &Set,
     state: &[f64],
@@ -178,7 +179,7 @@ pub(crate) fn apply(
             let pair = side * layout.padded + ball;
             let contact = table.contact[pair];
             let arm = sub(layout.ball_vector(state, POSITION, ball), now.motion.position);
-            // Parts of the normal towards X and towards the groove's bottom.
+            // Components of the normal towards X and towards the groove's bottom.
             let (sine, cosine) =
                 (dot(contact.normal, axis), law.outward * dot(contact.normal, contact.outward));
             let seen = Seen {

@@ -1,24 +1,26 @@
-//! A body that bends as it spins: a rigid body with its six coordinates, loads and drives, and beside it shapes of
-//! bending that have no mass in common with its rigid motions.
+//! A flexible rotating body: a rigid body with its six coordinates, loads and drives, and bending modes that are
+//! orthogonal to its rigid motions.
 //!
-//! Shapes stand in axes e₂, e₃ that follow the body's tilt and not its spin, one amplitude along each: a_k and
-//! b_k. A section at x lies off the body's axis by u = Σ w_k (a_k e₂ + b_k e₃), and is turned against the body by
-//! Σ θ_k (a_k e₃ − b_k e₂); shapes of stretching, one amplitude c_k each, move it along the axis, and so does bending, whose
-//! line keeps its length: by −½ (a·D a + b·D b). With a mass of 1 kg each,
+//! Modes are in axes e₂, e₃ that follow the body's tilt and not its spin, one amplitude along each: a_k and b_k. A
+//! section at x is displaced from the body's axis by u = Σ w_k (a_k e₂ + b_k e₃), and rotated relative to the body by Σ
+//! θ_k (a_k e₃ − b_k e₂). Stretching modes, one amplitude c_k each, move it along the axis, as does bending, since the
+//! axis keeps its length: by −½ (a·D a + b·D b). With a modal mass of 1 kg each,
 //!
 //! ä + Ω (G ḃ − g ω₂) + α ȧ + ω² a = Q_a,
+//!
 //! b̈ − Ω (G ȧ + g ω₃) + α ḃ + ω² b = Q_b,
+//!
 //! c̈ + α ċ + ω² c = Q_c,
 //!
-//! Ω the spin, ω₂ and ω₃ the body's tilting, G_kl = ∫ θ_k θ_l dJ and g_k = ∫ θ_k dJ over the inertia J about
-//! the axis; the body feels the moment −Ω (g·ȧ e₂ + g·ḃ e₃). This is exact for shafts of revolution as far as it is linear in
-//! amplitudes: what goes with their square but D (the angular momentum of a whirl as the axis tilts, the change of the
-//! transverse inertia, the inertia of the shortening) is left out, parts of 1e-6 where deflections are a thousandth of the length. Each section spins
-//! about its own axis, and what drives the spin turns each by its own axis, so that a rate of the spin moves no shape.
-//! A shaft does not twist.
+//! Ω the spin, ω₂ and ω₃ the body's tilt rates, G_kl = ∫ θ_k θ_l dJ and g_k = ∫ θ_k dJ over the inertia J about the
+//! axis; the body has the moment −Ω (g·ȧ e₂ + g·ḃ e₃). This is exact for axisymmetric shafts to first order in the
+//! amplitudes. Second-order terms other than D (angular momentum of a whirl as the axis tilts, change of the transverse
+//! inertia, inertia of the shortening) are omitted: 1e-6 for deflections of a thousandth of the length. Each section
+//! rotates about its own axis, and the drive of the spin rotates each about its own axis, so that a change of speed
+//! excites no mode. A shaft does not twist.
 //!
-//! Loads on a section, about its displaced centre, act on body and shapes by the transpose of how these move it:
-//! forces sum to those on the body, powers are equal.
+//! Loads on a section, about its displaced centre, act on body and modes by the transpose of its motion: the sum of
+//! forces on the body and the power are the same.
 
 use crate::assembly::mount::Mount;
 use crate::assembly::plan::Stage;
@@ -37,25 +39,25 @@ pub struct ElasticShaft {
     /// Index in [`crate::assembly::lists::Assembly::bodies`].
     pub body: usize,
     pub shapes: ShaftShapes,
-    /// α, 1/s: of bending, in axes that do not spin.
+    /// Damping of bending in axes that do not rotate, α, 1/s.
     pub damping: f64,
-    /// 1/s: of bending as the spinning material feels it. Above a critical speed it feeds the whirl.
+    /// Internal damping of bending, in rotating axes, 1/s. Above a critical speed it feeds the whirl.
     pub internal_damping: f64,
     pub loads: Vec<ShaftLoad>,
     pub unbalances: Vec<Unbalance>,
-    /// Sections that are recorded, by name.
+    /// Recorded sections, by name.
     pub watched: Vec<(String, Section)>,
 }
 
-/// Shapes at one place along a shaft.
+/// Modes at one position along a shaft.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
-    /// From the body's centre, m.
+    /// Position from the body's centre, m.
     pub along: f64,
-    /// For a unit of each shape: m, rad.
+    /// Per unit of each mode: m, rad.
     pub deflection: Vec<f64>,
     pub turn: Vec<f64>,
-    /// For a unit of each shape of stretching, m.
+    /// Per unit of each stretching mode, m.
     pub stretch: Vec<f64>,
     /// [`ShaftShapes::shortening`], row by row.
     pub shortening: Vec<f64>,
@@ -69,27 +71,27 @@ pub struct ShaftLoad {
     pub force: [Profile; 3],
 }
 
-/// A small mass beside the axis.
+/// An unbalance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unbalance {
     pub section: Section,
-    /// kg·m.
+    /// Mass times eccentricity, kg·m.
     pub size: f64,
-    /// From the body's own Y towards its Z, rad.
+    /// Angle from the body's own Y towards its Z, rad.
     pub angle: f64,
 }
 
-/// How far a shaft is bent and how fast, out of the state.
+/// Amplitudes of a shaft and their rates, from the state.
 #[derive(Clone, Copy, Debug)]
 pub struct Bend<'s> {
-    /// Along e₂, e₃ and the axis, m.
+    /// Amplitudes along e₂, e₃ and the axis, m.
     pub gone: [&'s [f64]; 3],
-    /// m/s, in axes that do not turn about the shaft's.
+    /// Rates, m/s, in axes that do not rotate about the shaft's.
     pub speed: [&'s [f64]; 3],
 }
 
 impl<'s> Bend<'s> {
-    /// `count` shapes of bending.
+    /// `count` bending modes.
     pub fn of(count: usize, entries: &'s [f64]) -> Bend<'s> {
         let (gone, speed) = entries.split_at(entries.len() / 2);
         let parts = |of: &'s [f64]| [&of[..count], &of[count..2 * count], &of[2 * count..]];
@@ -97,12 +99,12 @@ impl<'s> Bend<'s> {
     }
 }
 
-/// A section where it is now.
+/// A section at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct SectionNow {
-    /// As a race that sits on it.
+    /// Kinematics of a race on it.
     pub race: BodyKinematics,
-    /// Its turn against the body, rad, and its own axis; inertial axes.
+    /// Its rotation relative to the body, rad, and its own axis; inertial axes.
     pub turn: Vec3,
     pub axis: Vec3,
 }
@@ -111,24 +113,24 @@ fn sum(shape: &[f64], amplitudes: &[f64]) -> f64 {
     shape.iter().zip(amplitudes).map(|(shape, amplitude)| shape * amplitude).sum()
 }
 
-/// Rotation by a vector of less than a few degrees.
+/// Rotation by a vector of at most a few degrees.
 fn turned_by(turn: Vec3) -> UnitQuaternion<f64> {
     let angle = dot(turn, turn).sqrt();
-    // sin(θ/2)/θ, whose series serves an angle of nothing.
+    // sin(θ/2)/θ by its series, which includes zero.
     let factor =
         if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { libm::sin(0.5 * angle) / angle };
     let [x, y, z] = scale(turn, factor);
     UnitQuaternion::new_unchecked(Quaternion::new(libm::cos(0.5 * angle), x, y, z))
 }
 
-/// The part of a body's spin that tilts its axis.
+/// Part of a body's angular velocity that tilts its axis.
 fn tilting(body: &BodyKinematics) -> Vec3 {
     let axis = body.motion.axis;
     add_scaled(body.motion.spin, -dot(body.motion.spin, axis), axis)
 }
 
 impl Section {
-    /// The section of a bent body, and what sits on it as `mount` says.
+    /// The section of a bent body, with an attachment as `mount` says.
     pub fn place(&self, body: &BodyKinematics, mount: &Mount, bend: &Bend) -> SectionNow {
         let [e2, e3] = body.tilt_directions;
         let across = |shape: &[f64], of: [&[f64]; 3]| [sum(shape, of[0]), sum(shape, of[1])];
@@ -153,18 +155,18 @@ impl Section {
         let bending = add_scaled(turn_rate, 0.5, cross(turn, turn_rate));
         state.spin = add(add_scaled(tilting, dot(own.spin, own.axis), axis), bending);
         if mount.reversed {
-            // Half a turn about Z, as of what sits on a rigid body.
+            // Half a turn about Z, as on a rigid body.
             state.orientation *= UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 1.0));
         }
         SectionNow { race: BodyKinematics::new(state), turn, axis }
     }
 
-    /// Against its body, rad.
+    /// Rotation relative to its body, rad.
     pub fn turned(&self, bend: &Bend) -> f64 {
         libm::hypot(sum(&self.turn, bend.gone[0]), sum(&self.turn, bend.gone[1]))
     }
 
-    /// By how much bending takes the section nearer to the body's centre, and how fast, m and m/s.
+    /// Axial displacement of the section towards the body's centre by bending, and its rate, m and m/s.
     fn shorter(&self, bend: &Bend) -> (f64, f64) {
         let (mut shorter, mut rate) = (0.0, 0.0);
         for (gone, speed) in bend.gone.iter().zip(&bend.speed).take(2) {
@@ -177,8 +179,8 @@ impl Section {
         (shorter, rate)
     }
 
-    /// What loads on a section of a body so bent do to the body, about its centre; adds what they do to shapes (N) to
-    /// `pushes`, along e₂, e₃ and the axis.
+    /// Wrench on a bent body, about its centre, of loads on a section; adds the modal forces (N) along e₂, e₃ and the
+    /// axis to `pushes`.
     pub fn take(
         &self,
         (body, bend): (&BodyKinematics, &Bend),
@@ -217,16 +219,16 @@ impl Section {
     }
 }
 
-/// Powers and the moment on the body.
+/// Powers, and the moment on the body.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShaftRates {
-    /// Of damping and of loads, W.
+    /// Power of damping and of loads, W.
     pub damped: f64,
     pub driven: f64,
     pub on_body: Wrench,
 }
 
-/// What of a shaft is part of its equations.
+/// Terms in the equations of a shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaftSteps {
     pub loads: bool,
@@ -234,37 +236,37 @@ pub struct ShaftSteps {
 }
 
 impl ElasticShaft {
-    /// Shapes of bending along one direction.
+    /// Number of bending modes in one plane.
     pub fn count(&self) -> usize {
         self.shapes.frequencies.len()
     }
 
-    /// a, b and c.
+    /// Number of amplitudes a, b and c.
     pub fn amplitudes(&self) -> usize {
         2 * self.count() + self.shapes.stretch_frequencies.len()
     }
 
-    /// Sections where something acts or that are watched.
+    /// Sections with loads or probes.
     pub fn sections(&self) -> impl Iterator<Item = &Section> {
         let loads = self.loads.iter().map(|load| &load.section);
         let unbalances = self.unbalances.iter().map(|unbalance| &unbalance.section);
         loads.chain(unbalances).chain(self.watched.iter().map(|(_, section)| section))
     }
 
-    /// Of the springs of a, b and c, rad/s.
+    /// Natural frequencies of a, b and c, rad/s.
     pub fn frequencies(&self) -> impl Iterator<Item = f64> {
         let ShaftShapes { frequencies, stretch_frequencies, .. } = &self.shapes;
         frequencies.iter().chain(frequencies).chain(stretch_frequencies).copied()
     }
 
-    /// In the state: amplitudes, and how fast.
+    /// Number of entries in the state: amplitudes and rates.
     pub fn entries(&self) -> usize {
         2 * self.amplitudes()
     }
 
-    /// Rates of the amplitudes under springs, gyroscopic moments, damping, loads and unbalances; what holds the shaft
-    /// adds to them. `acceleration` of a given spin, rad/s²; `None` where a torque drives it, whose unbalances work within the body
-    /// ([`crate::members::unbalance`]).
+    /// Rates of the amplitudes under springs, gyroscopic moments, damping, loads and unbalances; attachments add to
+    /// them. `acceleration` of a prescribed spin, rad/s²; `None` for a spin driven by a torque, whose unbalances are in
+    /// [`crate::members::unbalance`].
     pub fn rates(
         &self,
         steps: ShaftSteps,
@@ -280,7 +282,7 @@ impl ElasticShaft {
         let own = &body.motion;
         let spin = dot(own.spin, own.axis);
         let tilting = [dot(own.spin, e2), dot(own.spin, e3)];
-        // e₂ and e₃ turn about the axis by ξ̇ sin λ.
+        // e₂ and e₃ rotate about the axis by ξ̇ sin λ.
         let twist = tilting[0] * own.axis[1] / body.cos_lambda;
         let mut done = ShaftRates::default();
         let (going, pushed) = rates.split_at_mut(self.amplitudes());
@@ -315,7 +317,7 @@ impl ElasticShaft {
         done
     }
 
-    /// Damping in axes that do not spin, and in those that do: −c (q̇ − Ω × q), whose moment the spin bears.
+    /// Damping in axes that do not rotate, and in rotating ones: −c (q̇ − Ω × q), whose moment acts on the spin.
     fn damp(&self, spin: f64, bend: &Bend, axis: Vec3, pushed: &mut [f64], done: &mut ShaftRates) {
         let count = self.count();
         let mut moment = 0.0;
@@ -339,8 +341,8 @@ impl ElasticShaft {
         done.on_body.moment = add_scaled(done.on_body.moment, moment, axis);
     }
 
-    /// What damping inside pushes the amplitudes with while the shaft spins and its axis stands still, bent: across the bend, as a
-    /// fibre is stretched and pressed in turns, N.
+    /// Modal forces of internal damping of a bent shaft that spins about a fixed axis, N: across the deflection, as
+    /// fibres are stretched and compressed in turn.
     pub fn dragged(&self, spin: f64, amplitudes: &[f64]) -> Vec<f64> {
         let count = self.count();
         let drag = self.internal_damping * spin;
@@ -389,7 +391,7 @@ impl ElasticShaft {
         }
     }
 
-    /// Of its bending alone; its rigid motion is the body's.
+    /// Energy of bending; the rigid motion is the body's.
     pub fn energy(&self, entries: &[f64]) -> ModalEnergy {
         let (gone, speed) = entries.split_at(self.amplitudes());
         let mut energy = ModalEnergy::default();

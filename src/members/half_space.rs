@@ -1,17 +1,17 @@
-//! Frictionless contact of a rigid surface with an elastic half-space: which cells touch and how hard.
+//! Frictionless contact of a rigid surface with an elastic half-space: contact cells and their pressure.
 //!
-//! Pressure is uniform on each cell of a rectangular grid; a cell sinks by Love's formula for a uniformly loaded
-//! rectangle (Love 1929; Johnson, Contact Mechanics, 3.25). Where the surface comes to lie,
-//! p ≥ 0, gap ≥ 0 and p·gap = 0 is the minimum of ½ pᵀC p − pᵀ(δ − g) over p ≥ 0, which conjugate gradients find
-//! (Polonsky and Keer, Wear 231, 1999; here at a given approach δ instead of a given load, and over the cells with
-//! pressure alone, until those have settled and the others are looked at).
+//! Pressure is uniform on each cell of a rectangular grid; the displacement of a cell follows Love's formula for a
+//! uniformly loaded rectangle (Love 1929; Johnson, Contact Mechanics, 3.25). The solution of p ≥ 0, gap ≥ 0 and p·gap =
+//! 0 is the minimum of ½ pᵀC p − pᵀ(δ − g) over p ≥ 0, found by conjugate gradients (Polonsky and Keer, Wear 231, 1999;
+//! here at a given approach δ instead of a given load, and over the cells with pressure, with checks of the others
+//! between).
 //!
-//! The modulus E* is one, since it scales pressures alone.
+//! The modulus E* is one, since it only scales pressures.
 
 use std::f64::consts::PI;
 
-/// Cells of a rectangle in rows of equal x, `nx` around the origin; `ny` along y around the origin, or
-/// on the positive side alone where both sides are alike.
+/// Cells of a rectangle in rows of equal x, `nx` around the origin; `ny` along y around the origin, or on the positive
+/// side alone in the symmetric case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     pub nx: usize,
@@ -19,12 +19,12 @@ pub struct Grid {
     /// Size of a cell, m.
     pub hx: f64,
     pub hy: f64,
-    /// Whether the side y < 0 is the mirror image.
+    /// True if the side y < 0 is the mirror image.
     pub mirrored: bool,
 }
 
 impl Grid {
-    /// Middle of a cell by its number, m.
+    /// Centre of a cell, m.
     pub fn middle(&self, cell: usize) -> [f64; 2] {
         let [i, j] = [cell / self.ny, cell % self.ny].map(|index| index as f64);
         let first = if self.mirrored { 0.5 } else { -0.5 * (self.ny as f64 - 1.0) };
@@ -36,10 +36,9 @@ impl Grid {
     }
 }
 
-/// How deep a point sinks at x, y (m) from the middle of a rectangle of half sides a, b (m) under unit pressure
-/// over unit E*, m.
+/// Displacement, m, at x, y (m) from the centre of a rectangle of half sides a, b (m) under unit pressure over unit E*.
 pub fn love(x: f64, y: f64, a: f64, b: f64) -> f64 {
-    // s ln(t + √(t² + s²)) of the four corners; asinh needs no cancellation where t < 0.
+    // s ln(t + √(t² + s²)) of the four corners; asinh avoids cancellation for t < 0.
     let corner = |s: f64, t: f64| {
         if s == 0.0 { 0.0 } else { s * libm::asinh(t / s.abs()) }
     };
@@ -55,7 +54,7 @@ struct Span {
     to: usize,
 }
 
-/// In each row from the first to the last cell with pressure.
+/// In each row, from the first to the last cell with pressure.
 fn pressed_spans(pressure: &[f64], ny: usize) -> Vec<Span> {
     let span = |row: &[f64]| Span {
         from: row.iter().position(|p| *p > 0.0).unwrap_or(0),
@@ -64,11 +63,11 @@ fn pressed_spans(pressure: &[f64], ny: usize) -> Vec<Span> {
     pressure.chunks_exact(ny).map(span).collect()
 }
 
-/// What unit pressure on a cell, and on its mirror image, does to every cell, for a grid of one size.
+/// Displacement of every cell by unit pressure on a cell and on its mirror image, for a grid of one size.
 #[derive(Clone, Debug)]
 pub struct Influence {
     grid: Grid,
-    /// For rows so far apart and a pressed column, every column.
+    /// For each distance of rows and each loaded column, every column.
     kernel: Vec<f64>,
 }
 
@@ -87,11 +86,10 @@ impl Influence {
         Influence { grid, kernel }
     }
 
-    /// How deep the cells in `spans`, and up to seven behind each, sink under `pressure`, where each cell of the grid is
-    /// `scale` times as large; others are left as they are.
+    /// Displacements under `pressure` of the cells in `spans`, and up to seven behind each, for cells `scale` times as
+    /// large; others are not changed.
     ///
-    /// Some cells of a row at a time, whose sums stay in registers while the kernel goes by; every sum is over the
-    /// pressed cells in their order.
+    /// Several cells of a row at a time, with sums in registers; every sum is over the loaded cells in their order.
     fn sink(&self, scale: f64, pressure: &[f64], spans: &[Span], to: &mut [f64]) {
         let ny = self.grid.ny;
         let pressed = || (0..pressure.len()).filter(|cell| pressure[*cell] != 0.0);
@@ -115,8 +113,8 @@ impl Influence {
         }
     }
 
-    /// Adds what a change of pressure does to the cells in `spans`, by way of `by`; others are worth nothing until all are
-    /// summed again.
+    /// Adds the displacements due to a change of pressure to the cells in `spans`, using `by`; others are invalid until
+    /// all are summed again.
     fn sink_further(
         &self,
         scale: f64,
@@ -129,7 +127,7 @@ impl Influence {
         sunk.iter_mut().zip(by.iter()).for_each(|(sunk, by)| *sunk += by);
     }
 
-    /// The next `N` cells of a row; how many they are.
+    /// The next `N` cells of a row; returns their number.
     fn fill<const N: usize>(
         &self,
         pressed: &[(usize, usize, f64)],
@@ -141,7 +139,7 @@ impl Influence {
         N
     }
 
-    /// Sums over all pressed cells, as (row, column, pressure), in row `i` from column `j` on.
+    /// Sums over all loaded cells, as (row, column, pressure), in row `i` from column `j` on.
     fn sums<const N: usize>(
         &self,
         pressed: &[(usize, usize, f64)],
@@ -160,7 +158,7 @@ impl Influence {
     }
 }
 
-/// A contact at a given approach, E* = 1 Pa: multiply by E*.
+/// A contact at a given approach for E* = 1 Pa: multiply by E*.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pressed {
     /// Over E*, cell by cell.
@@ -169,22 +167,23 @@ pub struct Pressed {
     pub load: f64,
     /// Stored energy over E*, m³.
     pub energy: f64,
-    /// Steps of conjugate gradients, and looks at the cells without pressure.
+    /// Conjugate gradient steps, and checks of the cells without pressure.
     pub iterations: usize,
 }
 
-/// Cells without pressure are looked at when the gaps of the others are this part of what they were at the last look. Of a dent with
-/// a shoulder that is one iteration in ten, whose sums are three times as long as those over pressed cells alone.
+/// Cells without pressure are checked when the gaps of the others have fallen to this fraction since the last check.
+/// For a dent with a shoulder that is one iteration in ten, with sums three times as long.
 const LOOK: f64 = 0.05;
-/// Pressure of a cell that joins, in parts of what the last step would give it, or of what closes the gap of a cell alone.
+/// Initial pressure of a joining cell, as a fraction of the last step's or of that which closes the gap of a single
+/// cell.
 const JOINING: f64 = 1e-3;
-/// Iterations after which a solve is given up, looks among them; tens are usual.
+/// Largest number of iterations including checks; tens are usual.
 const MOST_ITERATIONS: usize = 500;
 
-/// LoadPatterns a rigid surface of `gap`s (m, cell by cell, at no approach) into the half-space by `approach` (m).
+/// Loads the half-space by a rigid surface of `gap`s (m, cell by cell, at zero approach) at an `approach` (m).
 ///
-/// Cells of the influence's grid are `scale` times as large. `guess` is a pressure to begin with. The gap in contact
-/// is closed to `tolerance` times the largest overclosure. `None` where conjugate gradients do not get there.
+/// Cells of the influence's grid are `scale` times as large. `guess` is an initial pressure. The gap in contact is
+/// closed to `tolerance` times the largest overclosure. `None` if conjugate gradients do not converge.
 pub fn press(
     influence: &Influence,
     scale: f64,
@@ -201,7 +200,7 @@ pub fn press(
     if overclosed <= 0.0 {
         return Some(Pressed { pressure: vec![0.0; cells], ..Pressed::default() });
     }
-    // A first pressure as of a cell by itself over the whole contact: far too small, but where it belongs.
+    // Initial pressure of single cells over the whole contact: far too small, but at the right cells.
     let mut p: Vec<f64> = match guess {
         Some(guess) => guess.iter().map(|p| p.max(0.0)).collect(),
         None => {
@@ -214,10 +213,10 @@ pub fn press(
     let (mut t, mut change) = (vec![0.0; cells], vec![0.0; cells]);
     let (mut before, mut conjugate, mut step) = (1.0, 0.0, 0.0);
     influence.sink(scale, &p, &all, &mut sunk);
-    // Whether `sunk` is that of all cells, the columns elsewhere, and the gap under pressure when it last was.
+    // Whether `sunk` is valid for all cells, the loaded columns, and the gap under pressure at that time.
     let (mut everywhere, mut spans, mut looked) = (true, all.clone(), f64::INFINITY);
     for iteration in 0..MOST_ITERATIONS {
-        // Positive is open, and wants less pressure.
+        // Positive for an open gap.
         let open = |cell: usize, sunk: &[f64]| gap[cell] + sunk[cell] - approach;
         let (mut square, mut worst) = (0.0, 0.0f64);
         for cell in (0..cells).filter(|cell| p[*cell] > 0.0) {
@@ -233,10 +232,10 @@ pub fn press(
             let overclosed_now = others.fold(0.0f64, |most, cell| most.max(-open(cell, &sunk)));
             if worst.max(overclosed_now) <= tolerance * overclosed {
                 let load = p.iter().sum::<f64>() * area;
-                // The minimum, which what is left of the gaps changes to second order only.
+                // The energy is a minimum: remaining gaps have second-order effects.
                 let inside = gap.iter().zip(&sunk).map(|(gap, u)| approach - gap - 0.5 * u);
                 let energy = p.iter().zip(inside).map(|(p, inside)| p * inside).sum::<f64>() * area;
-                // Cells that are not numbers are neither pressed nor open.
+                // NaN cells are neither loaded nor open.
                 return (load + energy).is_finite().then_some(Pressed {
                     load,
                     energy,
@@ -244,8 +243,8 @@ pub fn press(
                     iterations: iteration,
                 });
             }
-            // Overclosed cells without pressure join with hardly any, so that the first step does not send them away
-            // again, and the directions begin anew.
+            // Overclosed cells join with a small pressure, so that the first step does not remove them again, and the
+            // directions restart.
             change.fill(0.0);
             let firmness =
                 JOINING * if step > 0.0 { step } else { 1.0 / (scale * influence.kernel[0]) };
@@ -291,7 +290,7 @@ pub fn press(
                 (change[cell], p[cell], conjugate) = (-p[cell], 0.0, 0.0);
             }
         }
-        // What pulled lets go, and the directions begin anew.
+        // Cells with tension leave the contact, and the directions restart.
         if conjugate == 0.0 {
             influence.sink_further(scale, &change, &spans, &mut q, &mut sunk);
         }

@@ -1,8 +1,8 @@
-//! A rigid race in the bore of a reduced solid: contact on one side only and without friction, (2.16) to (2.19).
+//! A rigid race in the bore of a reduced solid: unilateral contact without friction, (2.16) to (2.19).
 //!
-//! Nodes of the bore move along their normals; what that leaves out of a displacement, its part across the normal,
-//! changes a node's distance from the race's axis by its square over the diameter. Forces are the gradient of the
-//! energy in these coordinates: whatever the race gets the shapes get too, with the other sign.
+//! Bore nodes move along their normals; the omitted lateral displacement changes a node's distance from the race's axis
+//! by its square over the diameter. Forces are the gradient of the energy in these coordinates: race and modes get
+//! opposite forces.
 
 use crate::assembly::mount::Mount;
 use crate::ch2_housing::bore_contact::{
@@ -14,28 +14,28 @@ use crate::members::reduced_solid::ReducedSolid;
 use crate::members::rigid_body::{BodyKinematics, Wrench};
 use crate::numeric::profile::Profile;
 
-/// What sits in what.
+/// A housing fit: a race and a bore.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seat {
-    /// As messages name it: "the bore".
+    /// Name in messages: "the bore".
     pub name: String,
-    /// Before the names of its columns; `None` for the only one.
+    /// Prefix of its columns; `None` for the only one.
     pub label: Option<String>,
-    /// Middle of the seat on a body, whose axis is the race's.
+    /// Mount of the race's centre and axis on a body.
     pub race: Mount,
-    /// Index in [`crate::assembly::lists::Assembly::solids`], and of the surface in that.
+    /// Index in [`crate::assembly::lists::Assembly::solids`], and of the surface in that solid.
     pub solid: usize,
     pub surface: usize,
-    /// Of the race's outside, m; an interference grows in by it.
+    /// Outside radius of the race, m; a growing interference changes it.
     pub radius: Profile,
-    /// Of the race, m.
+    /// Width of the race, m.
     pub width: f64,
-    /// How far nodes may slide over each rim and still be touched, m.
+    /// Axial displacement beyond each rim within which nodes stay in contact, m.
     pub rim: f64,
     pub penalty: Penalty,
-    /// Centre of the race before anything moves, m.
+    /// Centre of the race before any motion, m.
     pub nominal: Vec3,
-    /// Of the race there, a unit vector.
+    /// Axis of the race there, a unit vector.
     pub axis: Vec3,
 }
 
@@ -46,30 +46,30 @@ impl Seat {
     }
 }
 
-/// A node that touches, as linearised contacts need it.
+/// A contact node, for linearised contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TouchingNode {
-    /// In the surface.
+    /// Index in the surface.
     pub node: usize,
     /// N/m.
     pub stiffness: f64,
-    /// Of the race, outwards, inertial axes.
+    /// Outward normal of the race, inertial axes.
     pub normal: Vec3,
-    /// From the race's centre, m.
+    /// Position from the race's centre, m.
     pub arm: Vec3,
-    /// Its part along the node's own normal, and the contact's force along that, N.
+    /// Component of the normal along the node's own normal, and the contact force along that, N.
     pub along: f64,
     pub load: f64,
 }
 
-/// A seat with room to work in, as last evaluated.
+/// A housing fit with working memory, as last evaluated.
 #[derive(Clone, Debug)]
 pub struct SeatNow {
     pub contact: ContactSum,
     /// Displacement of each node along its normal, m.
     pub outward: Vec<f64>,
     pub touching: Vec<TouchingNode>,
-    /// Shapes node by node.
+    /// Modes node by node.
     pub by_node: Vec<f64>,
     nodes: Vec<ContactNode>,
 }
@@ -92,8 +92,8 @@ impl SeatNow {
         }
     }
 
-    /// Loads on the race about its centre, where it lies now and the shapes have gone so far (m); adds the forces on
-    /// the shapes (N) to `pushes`.
+    /// Loads on the race about its centre at its present position and these modal coordinates (m); adds the modal
+    /// forces (N) to `pushes`.
     pub fn evaluate(
         &mut self,
         seat: &Seat,

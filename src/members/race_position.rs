@@ -1,4 +1,4 @@
-//! Where a race stands in an equilibrium, and how its place follows its coordinates.
+//! Position of a race in an equilibrium, and its derivatives by the coordinates.
 
 use crate::assembly::mount::Mount;
 use crate::kinematics::Pose;
@@ -31,13 +31,13 @@ impl InnerRacePosition {
         }
     }
 
-    /// The race that sits at a mount of the body with these coordinates. Derivatives are by the body's
-    /// tilts, and leave out how these move the race's centre.
-    /// Its centre counts from `origin` (m), so that far from the axes' own origin no digits are lost.
+    /// The race at a mount of the body with these coordinates. Derivatives are by the body's tilts, without the motion
+    /// of the race's centre. Its centre is relative to `origin` (m), so that no digits are lost far from the axes' own
+    /// origin.
     pub fn mounted(coordinates: &SVector<f64, 5>, mount: &Mount, origin: &Vector3<f64>) -> Self {
         let mut race = InnerRacePosition::new(coordinates);
         if mount.along != 0.0 || *origin != Vector3::zeros() {
-            // The axis less X: 1 − cos λ cos ξ without a difference of numbers near one.
+            // The axis less X: 1 − cos λ cos ξ without cancellation.
             let half = |angle: f64| libm::sin(0.5 * angle).powi(2);
             let (xi, lambda) = (half(coordinates[3]), half(coordinates[4]));
             let shortening = 2.0 * (xi + lambda) - 4.0 * xi * lambda;
@@ -57,7 +57,7 @@ impl InnerRacePosition {
         race
     }
 
-    /// The same race, seen from the frame in which its present one stands at `axes`.
+    /// The same race in the frame in which its present frame has the pose `axes`.
     pub fn seen_from_parent_of(mut self, axes: &Pose) -> Self {
         self.centre = axes.point_to_parent(&self.centre);
         let turned = [
@@ -77,8 +77,7 @@ impl InnerRacePosition {
         ([self.axis_xi, self.axis_lambda], second)
     }
 
-    /// First (by ξ, λ) and second derivatives (ξξ, ξλ, λλ) of the centre of a race at a mount by its body's
-    /// tilts, m.
+    /// First (by ξ, λ) and second derivatives (ξξ, ξλ, λλ) of the centre of a race at a mount by its body's tilts, m.
     pub(crate) fn along(&self, mount: &Mount) -> ([Vector3<f64>; 2], [Vector3<f64>; 3]) {
         let by = if mount.reversed { -mount.along } else { mount.along };
         let first = [self.axis_xi * by, self.axis_lambda * by];

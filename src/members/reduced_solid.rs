@@ -1,9 +1,11 @@
-//! A flexible solid that moves in some shapes: natural ones and static answers to what takes hold of it.
+//! A flexible solid in component modes: natural modes and static correction modes.
 //!
-//! Displacements are u = Σ φ_k q_k. The shapes are orthogonal under mass and stiffness and have a mass of 1 kg each, so
-//! that with the forces f of what takes hold of the solid
+//! Displacements are u = Σ φ_k q_k. The modes are orthogonal in mass and stiffness and have a modal mass of 1 kg, so
+//! that under forces f
+//!
 //! q̈_k + α q̇_k + ω_k² q_k = φ_kᵀ f,
-//! α the coefficient of (2.7) over the mass. How shapes are found is `solids::reduction`'s.
+//!
+//! α the coefficient of (2.7) over the mass. `solids::reduction` computes the modes.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
@@ -11,54 +13,54 @@ use crate::assembly::plan::solid::SolidSteps;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::profile::Profile;
 
-/// Shapes as equations of motion need them; displacements of all nodes are kept apart.
+/// Modes in the equations of motion; displacements of all nodes are kept elsewhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReducedSolid {
-    /// As messages name it: "the housing".
+    /// Name in messages: "the housing".
     pub name: String,
-    /// Angular frequencies ω of the shapes, rad/s.
+    /// Natural frequencies ω, rad/s.
     pub frequencies: Vec<f64>,
     /// α, 1/s.
     pub damping: f64,
-    /// What gravity does to each shape, N.
+    /// Modal weight, N.
     pub weight: Vec<f64>,
     pub loads: Vec<ModalLoad>,
-    /// Where something may take hold of it.
+    /// Surfaces for housing fits.
     pub surfaces: Vec<Surface>,
-    /// How far each shape has gone at the start of a run, m.
+    /// Modal coordinates at the start of a run, m.
     pub start: Vec<f64>,
 }
 
-/// Forces on a solid that grow and fade together, as its shapes feel them.
+/// Proportional forces on a solid, projected onto its modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModalLoad {
-    /// Of each shape, N at profile value 1.
+    /// Modal forces, N at profile value 1.
     pub forces: Vec<f64>,
     pub profile: Profile,
 }
 
-/// Nodes whose displacement along one normal each counts.
+/// Nodes with a normal each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
     pub nodes: Vec<SurfaceNode>,
-    /// Displacement along the normal for a unit of each shape: all nodes of the first shape, of the second, …
+    /// Displacement along the normal per unit of each mode: all nodes of the first mode, of the second, …
     pub shapes: Vec<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceNode {
-    /// In the mesh.
+    /// Index in the mesh.
     pub node: u32,
-    /// Undeformed, m.
+    /// Undeformed position, m.
     pub place: Vec3,
-    /// Outwards from the race, inertial axes.
+    /// Outward normal of the race, inertial axes.
     pub normal: Vec3,
-    /// Its share of the surface, m².
+    /// Share of the surface, m².
     pub area: f64,
 }
 
 impl Surface {
-    /// Displacement of each node along its normal (m) as the shapes have gone so far (m).
+    /// Displacement of each node along its normal (m) for modal coordinates (m).
     pub fn along_normals(&self, gone: &[f64], to: &mut [f64]) {
         to.fill(0.0);
         for (shape, gone) in self.shapes.chunks_exact(self.nodes.len()).zip(gone) {
@@ -68,14 +70,14 @@ impl Surface {
         }
     }
 
-    /// The shapes node by node: all shapes at the first node, at the second, …
+    /// The modes node by node: all modes at the first node, at the second, …
     pub fn by_node(&self) -> Vec<f64> {
         let (nodes, shapes) = (self.nodes.len(), self.shapes.len() / self.nodes.len().max(1));
         let at = |i: usize| self.shapes[(i % shapes) * nodes + i / shapes];
         (0..self.shapes.len()).map(at).collect()
     }
 
-    /// Largest displacement along a normal for a unit of each shape.
+    /// Largest displacement along a normal per unit of each mode.
     pub fn largest(&self) -> impl Iterator<Item = f64> + '_ {
         let shapes = self.shapes.chunks_exact(self.nodes.len().max(1));
         shapes.map(|shape| shape.iter().fold(0.0f64, |most, along| most.max(along.abs())))
@@ -87,18 +89,18 @@ impl Surface {
 pub struct ModalEnergy {
     pub kinetic: f64,
     pub strain: f64,
-    /// Of its weight.
+    /// Energy of its weight.
     pub gravity: f64,
 }
 
 impl ReducedSolid {
-    /// How many shapes it has.
+    /// Number of modes.
     pub fn count(&self) -> usize {
         self.frequencies.len()
     }
 
-    /// Accelerations of the shapes under weight, loads, springs and damping at time `t` where they have gone so
-    /// far (m) at these speeds (m/s). Returns the power of damping and that of the loads, W.
+    /// Modal accelerations under weight, loads, springs and damping at time `t`, for modal coordinates (m) and rates
+    /// (m/s). Returns the power of damping and that of the loads, W.
     pub fn accelerations(
         &self,
         steps: SolidSteps,
@@ -148,7 +150,7 @@ impl ReducedSolid {
         energy
     }
 
-    /// Where the shapes rest under constant forces on each (N), m.
+    /// Modal coordinates under constant modal forces (N), m.
     pub fn rest(&self, forces: &[f64]) -> Vec<f64> {
         forces.iter().zip(&self.frequencies).map(|(force, w)| force / (w * w)).collect()
     }

@@ -1,4 +1,4 @@
-//! Motion of a race: what is prescribed is imposed, the rest follows from loads.
+//! Motion of a race: prescribed coordinates are imposed, the others follow from loads.
 
 use crate::assembly::lists::{Body, Mobility};
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};
@@ -18,8 +18,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 pub struct BodyKinematics {
     pub state: BodyState,
     pub motion: AxisMotion,
-    /// Directions about which tilt_y and tilt_z turn the axis: body-near e₂ and e₃, which do not
-    /// spin with the race.
+    /// Axes of tilt_y and tilt_z: e₂ and e₃, which do not spin with the race.
     pub tilt_directions: [Vec3; 2],
     /// cos λ.
     pub cos_lambda: f64,
@@ -61,7 +60,7 @@ pub(crate) fn directions(axis: Vec3) -> ([Vec3; 2], f64) {
     ([e2, [sin_xi, 0.0, cos_xi]], cos_lambda)
 }
 
-/// The race as its state has it, with every prescribed coordinate and rate at its given value.
+/// The race of a state, with every prescribed coordinate and rate at its value.
 pub fn with_prescribed(body: &DrivenBody, t: f64, mut state: BodyState) -> BodyKinematics {
     for i in 0..3 {
         if let Drive::Motion(profile) = &body.drives[i] {
@@ -108,7 +107,7 @@ pub fn with_prescribed(body: &DrivenBody, t: f64, mut state: BodyState) -> BodyK
     BodyKinematics { state, motion, tilt_directions: [e2, e3], cos_lambda }
 }
 
-/// A body of an assembly as its state has it at time `t`, given motions imposed.
+/// A body of an assembly for its state at time `t`, with prescribed motions.
 pub fn body_now(body: &Body, t: f64, state: BodyState) -> BodyKinematics {
     match &body.mobility {
         Mobility::Fixed => fixed(&body.rest),
@@ -133,14 +132,14 @@ pub fn fixed(at: &[f64; 5]) -> BodyKinematics {
     BodyKinematics::new(state)
 }
 
-/// A race that stands still at a pose.
+/// A race at rest at a pose.
 pub fn kinematics_at_rest(pose: &Pose) -> BodyKinematics {
     let mut state = BodyState::at_rest(pose.position.into());
     state.orientation = pose.orientation;
     BodyKinematics::new(state)
 }
 
-/// The race that sits on a body at a mount.
+/// The race on a body at a mount.
 pub fn kinematics_at_mount(body: &BodyKinematics, mount: &Mount) -> BodyKinematics {
     if mount.is_direct() {
         return *body;
@@ -150,7 +149,7 @@ pub fn kinematics_at_mount(body: &BodyKinematics, mount: &Mount) -> BodyKinemati
     state.position = add(state.position, arm);
     state.velocity = add(state.velocity, cross(state.spin, arm));
     if mount.reversed {
-        // Half a turn about Z: X and Y the other way round.
+        // Half a turn about Z.
         state.orientation *= UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 1.0));
     }
     BodyKinematics::new(state)
@@ -178,7 +177,7 @@ impl Wrench {
     }
 }
 
-/// Acceleration of a race and the powers that go into the ledger.
+/// Acceleration of a race and the powers for the ledger.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodyRates {
     pub acceleration: Vec3,
@@ -190,7 +189,7 @@ pub struct BodyRates {
     pub foundation_power: f64,
 }
 
-/// Newton and Euler for a body with an axis of symmetry; on a foundation where one has its springs at `rest`.
+/// Newton's and Euler's equations for an axisymmetric body; `rest` is the unloaded position of its foundation.
 pub fn rates(
     body: &DrivenBody,
     t: f64,
@@ -207,8 +206,8 @@ pub fn rates(
     // Rates of the five coordinates.
     let tilt_rates = [dot(state.spin, e2) / cos_lambda, dot(state.spin, e3)];
     let mut rates = BodyRates::default();
-    // ξ turns about Y, λ about e₃: the moments conjugate to them, as in statics. A moment about e₂
-    // of Q/cos λ does the work Q dξ.
+    // ξ rotates about Y, λ about e₃: the conjugate moments, as in statics. A moment Q/cos λ about e₂ does the work Q
+    // dξ.
     let conjugate = [scale(e2, 1.0 / cos_lambda), e3];
     let mut of_foundation = [0.0; 5];
     if let Some(rest) = rest {
@@ -262,7 +261,7 @@ fn foundation(
     power: &mut f64,
 ) -> [f64; 5] {
     let state = &race.state;
-    // Angles are wanted by springs alone.
+    // Angles are needed by springs alone.
     let sprung = body.foundation_stiffness[3] != 0.0 || body.foundation_stiffness[4] != 0.0;
     let tilts = if sprung { race.tilts() } else { [rest[3], rest[4]] };
     std::array::from_fn(|i| {
@@ -284,7 +283,7 @@ fn gyroscopic(inertia: &Inertia, axis: Vec3, spin: Vec3, across: Vec3) -> Vec3 {
     add_scaled(across, -momentum, cross(spin, axis))
 }
 
-/// Acceleration and dω/dt of a free body with an axis of symmetry, inertial axes.
+/// Acceleration and dω/dt of a free axisymmetric body, inertial axes.
 pub fn free_rates(
     inertia: &Inertia,
     axis: Vec3,
@@ -300,7 +299,7 @@ pub fn free_rates(
     (scale(force, 1.0 / inertia.mass), spin_rate)
 }
 
-/// Prescribed coordinates: their acceleration is given, and the drive does the work it takes.
+/// Prescribed coordinates: their acceleration is imposed, and the drive does the work.
 fn impose(
     body: &DrivenBody,
     t: f64,
@@ -323,8 +322,8 @@ fn impose(
     let (sin, cos) = (axis[1], libm::hypot(axis[0], axis[2]));
     let (xi_rate, lambda_rate) = (dot(state.spin, e2) / cos, dot(state.spin, e3));
     let spin_about_axis = dot(state.spin, axis);
-    // ω·e₂ = ξ̇ cos λ and ω·e₃ = λ̇, in directions that turn with the tilts (not with the race):
-    // ω̇·e = d(ω·e)/dt − ω·ė. The product of spin and the other tilt's rate is the gyroscopic one.
+    // ω·e₂ = ξ̇ cos λ and ω·e₃ = λ̇, in directions that rotate with the tilts (not with the race): ω̇·e = d(ω·e)/dt −
+    // ω·ė. The product of spin and the other tilt's rate is the gyroscopic term.
     let turning = [
         lambda_rate * spin_about_axis - 2.0 * xi_rate * lambda_rate * sin,
         xi_rate * (xi_rate * sin * cos - cos * spin_about_axis),

@@ -1,4 +1,4 @@
-//! Where bearings, connections and seats take hold of bodies that bend.
+//! Attachments of bearings, connections and housing fits on flexible bodies.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::mount::Mount;
@@ -15,7 +15,7 @@ pub struct SectionAttachment {
     pub now: SectionNow,
 }
 
-/// Of every mount in an assembly; `None` on bodies that do not bend.
+/// Section attachments of every mount of an assembly; `None` on rigid bodies.
 #[derive(Clone, Debug, Default)]
 pub struct SectionAttachments {
     /// Inner and outer race of each bearing.
@@ -49,7 +49,7 @@ impl SectionAttachments {
         }
     }
 
-    /// Takes all to where their bodies are, `shafts` the first entries of each in the state.
+    /// Updates all sections from their bodies; `shafts` are the first entries of each in the state.
     pub fn place(
         &mut self,
         assembly: &Assembly,
@@ -73,7 +73,7 @@ impl SectionAttachments {
         }
     }
 
-    /// Their sections in the order of bearings, connections and seats, with what they sit on.
+    /// All sections in the order of bearings, connections and housing fits, with their mounts.
     pub fn all<'h>(
         &'h self,
         assembly: &'h Assembly,
@@ -89,18 +89,18 @@ impl SectionAttachments {
 }
 
 impl ElasticShaft {
-    /// How it is bent in a state, its entries from `at` on.
+    /// Amplitudes and rates in a state, whose entries of the shaft begin at `at`.
     pub fn bend<'s>(&self, at: usize, state: &'s [f64]) -> Bend<'s> {
         Bend::of(self.count(), &state[at..at + self.entries()])
     }
 
-    /// Rates of its speeds among those of the whole state.
+    /// Modal accelerations of the shaft among the rates of the state.
     pub fn pushes<'r>(&self, at: usize, rates: &'r mut [f64]) -> &'r mut [f64] {
         &mut rates[at + self.amplitudes()..at + self.entries()]
     }
 }
 
-/// What sits at a mount, on a section that is held or on a rigid body.
+/// Kinematics at a mount, on a section or on a rigid body.
 pub fn kinematics_at_attachment(
     hold: &Option<SectionAttachment>,
     body: &BodyKinematics,
@@ -109,10 +109,10 @@ pub fn kinematics_at_attachment(
     hold.as_ref().map_or_else(|| kinematics_at_mount(body, mount), |hold| hold.now.race)
 }
 
-/// Shafts, where each begins in the state, and the state.
+/// Shafts, their first entries in the state, and the state.
 pub type Bent<'b> = (&'b [ElasticShaft], &'b [usize], &'b [f64]);
 
-/// Loads at a mount as its body feels them; shapes get theirs.
+/// Wrench of loads at a mount on its body; modal forces are added to the modes.
 pub fn wrench_on_body(
     (hold, mount): (&Option<SectionAttachment>, &Mount),
     (sits, body): (&BodyKinematics, &BodyKinematics),

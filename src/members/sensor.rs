@@ -1,4 +1,4 @@
-//! Sensors: what a motion is watched by besides the channels of its parts.
+//! Sensors: additional observations of a motion.
 
 use crate::ch5_cage::telemeter::Telemeter;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, norm, scale, sub};
@@ -6,7 +6,7 @@ use crate::members::rigid_body::BodyKinematics;
 use crate::motion::system::System;
 use nalgebra::Vector3;
 
-/// Something with a name that gives a number at each row.
+/// A named sensor with one value for each row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensor {
     pub name: String,
@@ -19,29 +19,30 @@ pub enum SensorKind {
     Telemeter(CageTelemeter),
 }
 
-/// Sits on a rigid body and turns with it.
+/// Accelerometer mounted on a rigid body, rotating with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accelerometer {
     /// Index in the assembly's bodies.
     pub body: usize,
-    /// In the body's axes, from its centre, m.
+    /// Position in the body's axes, from its centre, m.
     pub place: Vec3,
     /// Unit vector in the body's axes.
     pub direction: Vec3,
 }
 
-/// On the cage of a bearing, its transceiver beside it on the outer race, on the side of the bearing's own +X; the
-/// transceiver does not turn about the axis.
+/// Telemeter on the cage of a bearing, with its transceiver on the outer race, on the side of the bearing's +X; the
+/// transceiver does not rotate about the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CageTelemeter {
     /// Index in the assembly's bearings.
     pub bearing: usize,
     pub circuit: Telemeter,
-    /// Between the planes of both loops while cage and outer race are in their places, m.
+    /// Distance between the planes of both loops in the nominal position, m.
     pub distance: f64,
-    /// Of the transceiver's centre from the outer race's axis, along the scene's +Y and +Z, m.
+    /// Offset of the transceiver's centre from the outer race's axis, along the scene's +Y and +Z, m.
     pub offset: [f64; 2],
-    /// Of the loop's centre from the cage's axis, along the scene's +Y and +Z at the start; it turns with the cage, m.
+    /// Offset of the loop's centre from the cage's axis, along the scene's +Y and +Z at the start; it rotates with the
+    /// cage, m.
     pub runout: [f64; 2],
 }
 
@@ -54,7 +55,7 @@ impl Sensor {
         }
     }
 
-    /// What it reads where the system was evaluated last, which gave these rates.
+    /// Reading for the last evaluation of the system, with these rates.
     pub fn read(&self, system: &System, rates: &[f64]) -> f64 {
         match &self.kind {
             SensorKind::Accelerometer(sensor) => {
@@ -81,15 +82,14 @@ impl CageTelemeter {
     /// |S₁₁|.
     fn read(&self, system: &System) -> f64 {
         let set = &system.sets[self.bearing];
-        // A telemeter is of a bearing that has a cage.
+        // A telemeter belongs to a bearing with a cage.
         let Some(cage) = &set.cage else { return f64::NAN };
         let outer = &set.races[1].motion;
         let axis = outer.axis;
-        // Races and cage of a bearing that is put in the other way round have their own axes turned by half a turn about Z;
-        // angles count in the scene's.
+        // The axes of a reversed bearing are rotated by half a turn about Z; angles are in the scene's axes.
         let reversed = system.assembly.bearings[self.bearing].mounts[1].reversed;
         let facing = if reversed { -1.0 } else { 1.0 };
-        // Axes of the outer race that do not turn about its own.
+        // Axes of the outer race that do not rotate about its own.
         let flat = sub([0.0, 1.0, 0.0], scale(axis, axis[1]));
         let side = scale(flat, 1.0 / norm(flat));
         let up = scale(cross(axis, side), facing);

@@ -1,5 +1,5 @@
-//! Shapes of bending and of stretching of a free shaft: natural ones up to a frequency, and beside them its static answers
-//! to what takes hold of it, as far as the natural ones leave these out ([`crate::solids::free_modes`]).
+//! Bending and stretching modes of a free shaft: natural modes up to a frequency, and static correction modes for its
+//! attachments ([`crate::solids::free_modes`]).
 
 use crate::ch4_rotor::beam::{NODES, PlaneMatrix};
 use crate::members::beam::{Beam, BeamError, BeamMatrices, STATION};
@@ -8,33 +8,33 @@ use crate::solids::free_modes::{Cut, FreeBody, FreeShapes};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// One plane of bending over [deflection (m), turn of the section (rad)] at each station, SI units. The turn is positive where
-/// the deflection grows along the shaft.
+/// One plane of bending over [deflection (m), rotation of the section (rad)] at each station, SI units. The rotation is
+/// positive for a deflection that grows along the shaft.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BendingPlane {
-    /// Places along the shaft, m, in order.
+    /// Positions along the shaft, m, ascending.
     pub stations: Vec<f64>,
     pub mass: DMatrix<f64>,
     pub stiffness: DMatrix<f64>,
-    /// Inertia about the axis: Ω times it couples the two planes.
+    /// Axial inertia: times Ω it couples the two planes.
     pub axial_inertia: DMatrix<f64>,
-    /// Mass of displacement along the shaft that goes with each station, kg.
+    /// Axial mass of each station, kg.
     pub along: Vec<f64>,
     /// ∫ w′² between neighbouring stations of each element, over its stations.
     pub shortening: Vec<[PlaneMatrix; NODES - 1]>,
 }
 
-/// Where something takes hold of a shaft: index of the station, and whether it may turn it too.
+/// Attachment to a shaft: index of the station, and whether it has a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AttachedStation {
     pub station: usize,
     pub turns: bool,
 }
 
-/// Of a shaft, about its centre of mass.
+/// Rigid body part of a shaft, about its centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidPart {
-    /// Along the shaft, m.
+    /// Position along the shaft, m.
     pub centre: f64,
     /// kg, kg·m².
     pub mass: f64,
@@ -42,51 +42,51 @@ pub struct RigidPart {
     pub transverse: f64,
 }
 
-/// Shapes with a mass of 1 kg each: of bending, the same along both directions across the shaft, and of stretching.
+/// Modes of unit modal mass: of bending, equal in both planes, and of stretching.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShaftShapes {
-    /// Of bending, rad/s.
+    /// Frequencies of bending, rad/s.
     pub frequencies: Vec<f64>,
-    /// From the centre of mass, m, in order.
+    /// Positions from the centre of mass, m, ascending.
     pub stations: Vec<f64>,
-    /// Of a unit of each shape, station by station: all shapes at the first, at the second, …
+    /// Per unit of each mode, station by station: all modes at the first, at the second, …
     pub deflection: Vec<f64>,
     pub turn: Vec<f64>,
-    /// g: inertia about the axis that each shape tilts, kg·m² for a unit of it.
+    /// g: axial inertia tilted by each mode, kg·m² per unit.
     pub tilt_coupling: Vec<f64>,
     /// G, row by row.
     pub gyroscopic: Vec<f64>,
-    /// How many of them are natural ones; the others are static answers.
+    /// Number of natural modes; the others are static correction modes.
     pub natural: usize,
     pub cut: Cut,
-    /// Of stretching, rad/s, and displacements along the shaft as those of bending.
+    /// Frequencies of stretching, rad/s, and axial displacements in the order of those of bending.
     pub stretch_frequencies: Vec<f64>,
     pub stretch: Vec<f64>,
-    /// D of each station, row by row: a shaft that bends by a and does not stretch comes nearer to its centre of mass by
-    /// ½ a·D a.
+    /// D of each station, row by row: a shaft with bending amplitudes a and no stretch is shortened towards its centre
+    /// of mass by ½ a·D a.
     pub shortening: Vec<f64>,
 }
 
-/// Why a shaft has no shapes.
+/// Error in the modes of a shaft.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ShapesError {
     #[error("the mass of the shaft is not positive: {0} kg")]
     Mass(f64),
     #[error(
-        "stiffnesses and inertias along the shaft are too far apart to tell its natural shapes; check sizes of segments and discs \
+        "stiffnesses and inertias along the shaft differ too much for its modes to be computed; check sizes of segments and discs \
          and their units"
     )]
     Range,
-    #[error("the shaft has a motion without stiffness that is no rigid one")]
+    #[error("the shaft has a non-rigid motion without stiffness")]
     Stiffness,
 }
 
 impl From<&BeamMatrices> for BendingPlane {
-    /// A shaft of revolution bends in both planes alike: the one of Y is taken.
+    /// An axisymmetric shaft bends equally in both planes: the one of Y is taken.
     fn from(beam: &BeamMatrices) -> BendingPlane {
         let size = 2 * beam.stations.len();
         let towards_y = |i: usize| STATION * (i / 2) + [0, 3][i % 2];
-        // (coordinate, its sign) of deflection along Z and turn towards Z.
+        // Coordinate and sign of deflection along Z and rotation towards Z.
         let towards_z = |i: usize| (STATION * (i / 2) + 1 + i % 2, [1.0, -1.0][i % 2]);
         let in_plane = |of: &DMatrix<f64>| {
             DMatrix::from_fn(size, size, |i, j| of[(towards_y(i), towards_y(j))])
@@ -130,9 +130,10 @@ impl BendingPlane {
         }
     }
 
-    /// Natural shapes below `limit` (rad/s), `most` of them, and the static answers at `holds`.
+    /// Natural modes below `limit` (rad/s), at most `most`, and static correction modes of the attachments `holds`.
     ///
     /// # Errors
+    ///
     /// A mass that is not positive.
     pub fn shapes(
         &self,
@@ -206,7 +207,7 @@ impl ShaftShapes {
         self.frequencies.len()
     }
 
-    /// Shapes at a place (m from the centre of mass): at a station exactly, else on the line between two.
+    /// Modes at a position (m from the centre of mass): exact at a station, otherwise interpolated linearly.
     pub fn section(&self, along: f64) -> Section {
         let count = self.count();
         let last = self.stations.len().saturating_sub(1);
@@ -233,13 +234,13 @@ impl ShaftShapes {
         }
     }
 
-    /// Hz.
+    /// Frequencies, Hz.
     pub fn hertz(&self) -> Vec<f64> {
         self.frequencies.iter().map(|w| w / TAU).collect()
     }
 }
 
-/// Why a shaft does not bend as asked.
+/// Error in a flexible shaft.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FreeShaftError {
     #[error(transparent)]
@@ -247,32 +248,33 @@ pub enum FreeShaftError {
     #[error(transparent)]
     Shapes(#[from] ShapesError),
     #[error(
-        "its unbalances, which a torque turns, are masses of {least} kg m^2 about the axis at least, and the shaft has {axial} in all. \
+        "its unbalances, with a body driven by a torque, are masses of at least {least} kg m^2 about the axis, and the shaft has {axial} in all. \
          Hint: check their units, or give the disc that carries them ([[body.NAME.beam.disc]])"
     )]
     Unbalances { least: f64, axial: f64 },
 }
 
-/// How many shapes a shaft gets.
+/// Number of modes of a shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept {
-    /// Natural ones up to here, rad/s.
+    /// Highest natural frequency kept, rad/s.
     pub below: f64,
-    /// And no more than these.
+    /// Largest number of natural modes.
     pub most: usize,
 }
 
 impl Kept {
     pub const ALL: Kept = Kept { below: f64::INFINITY, most: usize::MAX };
-    /// Static answers alone.
+    /// Static correction modes alone.
     pub const STATIC: Kept = Kept { below: 0.0, most: 0 };
 }
 
-/// The rigid part and the shapes of a beam; something takes hold of it at `holds` (m from its first end, and
-/// whether it may turn the section too), `others` are places where its sections are asked for besides.
+/// Rigid body part and modes of a beam; `holds` are its attachments (m from its first end, and whether they have a
+/// moment), `others` are positions of further sections.
 ///
 /// # Errors
-/// A beam that is none.
+///
+/// An invalid beam.
 pub fn free_shaft(
     beam: &Beam,
     kept: Kept,
@@ -289,7 +291,7 @@ pub fn free_shaft(
     let mut shapes = plane.shapes(kept.below, kept.most, &held)?;
     let even = [DVector::repeat(matrices.stations.len(), 1.0)];
     let (mass, stiffness) = (&matrices.axial_mass, &matrices.axial_stiffness);
-    // What turns no section pushes along the shaft as well.
+    // Attachments without a moment act along the shaft as well.
     let rows: Vec<usize> = held.iter().map(|hold| hold.station).collect();
     let free = FreeBody { mass, stiffness, rigid: &even };
     let stretch = free.shapes(kept.below, kept.most, &rows)?;

@@ -1,8 +1,8 @@
-//! Equilibrium of one ball between two races, and what the races feel of it.
+//! Equilibrium of one ball between two races, and its load on the races.
 //!
-//! The ball stays in the meridian plane of the outer race at its azimuth (the cage keeps it
-//! there); its axial and radial position in that plane are the two unknowns. Frictionless contacts
-//! make the energy depend on them through the meridian coordinates of each race alone.
+//! The ball stays in the meridian plane of the outer race at its azimuth, where the cage keeps it; its axial and radial
+//! position in that plane are the two unknowns. The energy of frictionless contacts depends on them through the
+//! meridian coordinates of each race alone.
 
 use crate::ch2_housing::bearing::contact::{
     MeridianContact, meridian_contact, normal_load, normal_stiffness, strain_energy,
@@ -12,7 +12,7 @@ use crate::members::race_position::InnerRacePosition;
 use crate::members::static_ball_start::starting_point;
 use nalgebra::Vector3;
 
-/// The outer race's meridian plane that holds a ball, in the frame of the inner race's coordinates.
+/// Meridian plane of the outer race with a ball, in the frame of the inner race's coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct BallPlane {
     /// Centre of the outer race, m.
@@ -23,14 +23,14 @@ pub struct BallPlane {
     pub radial: Vector3<f64>,
     /// Axial and radial part of the ball's weight, N.
     pub weight: [f64; 2],
-    /// Its part along the circumference, which the cage takes, N.
+    /// Circumferential component, which the cage carries, N.
     pub weight_around: f64,
     /// mω²: centrifugal force per distance from the axis, N/m.
     pub centrifugal: f64,
 }
 
 impl BallPlane {
-    /// Axial and radial part of what acts on a ball besides its contacts, N.
+    /// Axial and radial force on a ball in addition to its contacts, N.
     pub(crate) fn body_force(&self, radial: f64) -> [f64; 2] {
         [self.weight[0], self.weight[1] + self.centrifugal * radial]
     }
@@ -40,7 +40,7 @@ impl BallPlane {
     }
 }
 
-/// What both contacts of every ball have in common.
+/// Constants of both contacts of every ball.
 #[derive(Clone, Copy, Debug)]
 pub struct BallContacts {
     pub ball_radius: f64,
@@ -78,7 +78,7 @@ fn contact_energy(
     }
     let [na, nr] = contact.normal;
     let along = normal_stiffness(stiffness, contact.overlap);
-    // A load that keeps its size while its direction follows the ball: the swivel stiffness.
+    // The swivel stiffness of a load of constant size whose direction follows the ball.
     let across = load / contact.centre_distance;
     ContactEnergy {
         contact,
@@ -93,23 +93,23 @@ fn contact_energy(
     }
 }
 
-/// Of a ball at a position in its plane against the outer race.
+/// Energy of a ball at a position in its plane on the outer race.
 pub(crate) fn outer_energy(contacts: &BallContacts, position: [f64; 2]) -> ContactEnergy {
     let [axial, radial] = position;
     let BallContacts { outer, ball_radius, outer_stiffness, .. } = contacts;
     contact_energy(axial, radial, outer, *ball_radius, *outer_stiffness)
 }
 
-/// Of a ball against the inner race that sees it so.
+/// Energy of a ball on the inner race, at this relative position.
 pub(crate) fn inner_energy(contacts: &BallContacts, seen: &Sighting) -> ContactEnergy {
     let BallContacts { inner, ball_radius, inner_stiffness, .. } = contacts;
     contact_energy(seen.axial, seen.radial, inner, *ball_radius, *inner_stiffness)
 }
 
-/// Where the inner race sees a ball.
+/// Position of a ball relative to the inner race.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sighting {
-    /// From the race's centre to the ball centre.
+    /// Vector from the race's centre to the ball centre.
     pub(crate) arm: Vector3<f64>,
     pub(crate) axial: f64,
     pub(crate) radial: f64,
@@ -133,8 +133,7 @@ pub struct SettledBall {
     pub outer_load: f64,
     /// Contact energy minus the work of the body force, J.
     pub energy: f64,
-    /// Unbalanced force on the ball in its plane over the largest force on it; rounding when it
-    /// has settled.
+    /// Force residual of the ball in its plane over the largest force on it; rounding when converged.
     pub unbalance: f64,
 }
 
@@ -186,9 +185,9 @@ pub(crate) fn plane_energy(
     PlaneEnergy { energy: inner.energy + outer.energy - work, inner, outer, slope, curvature }
 }
 
-/// Finds the ball's equilibrium for a given position of the inner race.
+/// Equilibrium of the ball for a given position of the inner race.
 ///
-/// `None` when the ball has room and nothing pushes it: such a ball costs the distance test.
+/// `None` for an open ball without body force, which costs the distance test.
 pub fn settle(
     plane: &BallPlane,
     race: &InnerRacePosition,
@@ -201,8 +200,8 @@ pub fn settle(
     if unloaded && plane.is_forceless() { None } else { Some(ball) }
 }
 
-/// Overlap of both contacts together for a ball on the line between the groove centres, m, and the
-/// angle of that line to the outer race's radial plane, rad.
+/// Sum of both overlaps for a ball on the line between the groove centres, m, and the angle of that line to the outer
+/// race's radial plane, rad.
 pub fn overlap_of_races(
     plane: &BallPlane,
     race: &InnerRacePosition,
@@ -216,7 +215,7 @@ pub fn overlap_of_races(
     (libm::hypot(line[0], line[1]) - rooms, libm::atan2(line[0], line[1]))
 }
 
-/// The inner groove's centre of curvature as the ball at `point` sees it in its own plane, m.
+/// Centre of curvature of the inner groove relative to the plane of a ball at `point`, m.
 pub fn inner_centre_in_plane(
     plane: &BallPlane,
     race: &InnerRacePosition,
@@ -233,7 +232,7 @@ pub fn inner_centre_in_plane(
     [point[0] - away[0] * h[0] - away[1] * rho[0], point[1] - away[0] * h[1] - away[1] * rho[1]]
 }
 
-/// Contacts of a ball at a given place with the inner and the outer race.
+/// Contacts of a ball at a given position with the inner and the outer race.
 pub fn contacts_at(
     plane: &BallPlane,
     race: &InnerRacePosition,
@@ -265,13 +264,13 @@ fn minimise(
     for _ in 0..60 {
         let unbalance = now.slope[0].abs().max(now.slope[1].abs());
         let scale = now.inner.load.max(now.outer.load).max(body);
-        // What rounding of the overlaps leaves; below that there is nothing to gain.
+        // Rounding of the overlaps.
         let noise_force = 4.0 * f64::EPSILON * radius * (now.curvature[0] + now.curvature[2]);
         if unbalance <= 1e-11 * scale + noise_force {
             break;
         }
         let step = newton_step(&now.slope, &now.curvature);
-        // Newton's error falls as its square: one more step from here is the last, unseen.
+        // Quadratic convergence: one more step from here is the last, without a check.
         if unbalance <= 1e-7 * scale {
             position = [position[0] + step[0], position[1] + step[1]];
             now = plane_energy(plane, race, contacts, position);
@@ -300,7 +299,7 @@ fn minimise(
     }
     let scale = now.inner.load.max(now.outer.load).max(body);
     let noise = 4.0 * f64::EPSILON * radius * (now.curvature[0] + now.curvature[2]);
-    // A load of an overlap of some ulps is rounding too: the weight of a ball beside the axis.
+    // The load of an overlap of some ulps is rounding too, as for the weight of a ball at the height of the axis.
     let rounding_load = normal_load(contacts.outer_stiffness, 256.0 * f64::EPSILON * radius);
     let left = (now.slope[0].abs().max(now.slope[1].abs()) - noise - rounding_load).max(0.0);
     SettledBall {
@@ -314,13 +313,12 @@ fn minimise(
     }
 }
 
-/// What rounding of an overlap (some ulps of the distance from the axis) does to the energy, J.
+/// Rounding of the energy by an overlap of some ulps of the distance from the axis, J.
 pub fn energy_noise(load: f64, radius: f64) -> f64 {
     16.0 * f64::EPSILON * radius * load
 }
 
-/// −H⁻¹g; where the curvature does not hold the ball (no contact), a step of its room's size
-/// along the force instead.
+/// −H⁻¹g; if the curvature is not positive definite (no contact), a step of the free play along the force.
 fn newton_step(slope: &[f64; 2], curvature: &[f64; 3]) -> [f64; 2] {
     let determinant = curvature[0] * curvature[2] - curvature[1] * curvature[1];
     let trace = curvature[0] + curvature[2];

@@ -1,4 +1,4 @@
-//! What a race feels of a ball in equilibrium, the ball's own coordinates eliminated.
+//! Loads of a ball in equilibrium on a race, with the ball's own coordinates eliminated.
 
 use crate::members::race_position::InnerRacePosition;
 use crate::members::static_ball::{
@@ -6,9 +6,8 @@ use crate::members::static_ball::{
 };
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// Loads a ball puts on the inner race's five coordinates and their derivative, after the ball has
-/// found its equilibrium: adds ∂V/∂q and ∂²V/∂q² with the ball's coordinates condensed out. Returns the force
-/// on the race, N.
+/// Adds the load of a ball in equilibrium on the inner race's five coordinates and its derivative, ∂V/∂q and ∂²V/∂q²,
+/// with the ball's coordinates condensed. Returns the force on the race, N.
 pub fn add_to_race(
     plane: &BallPlane,
     race: &InnerRacePosition,

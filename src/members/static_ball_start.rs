@@ -1,4 +1,4 @@
-//! Where the search for a ball's equilibrium starts.
+//! Start of the search for a ball's equilibrium.
 
 use crate::members::race_position::InnerRacePosition;
 use crate::members::static_ball::{BallContacts, BallPlane, inner_centre_in_plane, plane_energy};
@@ -19,8 +19,8 @@ pub(crate) fn starting_point(
     let mut point = outer_centre;
     let mut line = [0.0, 1.0];
     let mut overlap = 0.0;
-    // The second pass starts on the line itself, where the sum of distances is stationary, so that
-    // its error is of second order in the (already small) error of the first pass.
+    // The second pass starts on the line itself, where the sum of distances is stationary: its error is the square of
+    // the first pass's small error.
     for _ in 0..2 {
         *evaluations += 1;
         let centre = inner_centre_in_plane(plane, race, &contacts.inner, point);
@@ -36,10 +36,9 @@ pub(crate) fn starting_point(
             outer_centre[1] + line[1] * outer_distance,
         ];
     }
-    // Balls that just touch (a transition fit without load) have overlaps of either sign from
-    // rounding alone; an overlap of a few ulps of the radius is no contact.
-    // A groove holds its ball from one side only: a line that points towards the axis belongs to
-    // races so far apart that the torus has been left.
+    // Overlaps of balls that just touch (a transition fit without load) have random signs by rounding; a few ulps of
+    // the radius are no contact. A groove has its ball on one side only: a line towards the axis belongs to races too
+    // far apart.
     if overlap > 16.0 * f64::EPSILON * contacts.outer.centre_radius && line[1] > 0.0 {
         if plane.is_forceless() {
             return Some(point);
@@ -50,7 +49,7 @@ pub(crate) fn starting_point(
         if squeeze > 100.0 * libm::hypot(along, outward) {
             return Some(point);
         }
-        // Squeezed no harder than it is pushed: either may decide where the ball rests.
+        // The body force may exceed the contact force and decide the position.
         let resting = resting_place(plane, race, contacts, point, evaluations);
         *evaluations += 4;
         let energy = |at| plane_energy(plane, race, contacts, at).energy;
@@ -62,11 +61,11 @@ pub(crate) fn starting_point(
     Some(resting_place(plane, race, contacts, point, evaluations))
 }
 
-/// Where the body force takes a ball with room: onto the outer race, onto the inner one, or into
-/// the wedge between both. Exact for parallel races but for the inner race's tilt.
+/// Position of an open ball under its body force: on the outer race, on the inner race, or in the wedge between them.
+/// Exact for parallel races, except for the inner race's tilt.
 ///
-/// Newton's method needs so good a start here: a ball held by its weight alone is a million times
-/// softer along the groove than across it.
+/// Newton's method needs this accurate start: a ball under its weight alone is a million times softer along the groove
+/// than across it.
 fn resting_place(
     plane: &BallPlane,
     race: &InnerRacePosition,
@@ -83,7 +82,7 @@ fn resting_place(
     let sink = |load: f64, stiffness: f64| libm::cbrt(load / stiffness).powi(2);
     let mut best = (f64::INFINITY, middle);
     for side in 0..2 {
-        // The normal is the force's direction; centre and force depend on the place a little.
+        // The normal is the force's direction; centre and force depend slightly on the position.
         let mut point = middle;
         for _ in 0..4 {
             *evaluations += 1;
@@ -116,8 +115,8 @@ fn resting_place(
     best.1
 }
 
-/// Ball pressed into the wedge between both races: distances from both centres of curvature are
-/// room plus overlap, and the overlaps follow from the loads that balance the body force.
+/// A ball in the wedge between both races: distances from both centres of curvature are free play plus overlap, with
+/// overlaps from the balance with the body force.
 fn wedge(
     plane: &BallPlane,
     race: &InnerRacePosition,
@@ -138,12 +137,12 @@ fn wedge(
         let (outer, inner) = (rooms[0] + overlaps[0], rooms[1] + overlaps[1]);
         let foot = (outer * outer - inner * inner + distance * distance) / (2.0 * distance);
         let square = outer * outer - foot * foot;
-        // Written so that NaN leaves here too.
+        // Written so that NaN returns here too.
         if square.is_nan() || square <= 0.0 {
             return None;
         }
         let force = plane.body_force(point[1]);
-        // Of the two corners the one that the force points to.
+        // Of the two corners the one in the direction of the force.
         let aside = [-along[1], along[0]];
         let sign = if force[0] * aside[0] + force[1] * aside[1] < 0.0 { -1.0 } else { 1.0 };
         let height = sign * square.sqrt();

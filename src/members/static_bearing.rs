@@ -1,10 +1,10 @@
-//! What a bearing brings to the search for an equilibrium: energy, load and stiffness over the coordinates of both
-//! bodies that carry its races, its balls eliminated.
+//! A bearing in the equilibrium search: energy, load and stiffness over the coordinates of both bodies, with its balls
+//! eliminated.
 //!
-//! The energy of the contacts is that of the inner race as the outer one sees it. So what the inner race's load and
-//! stiffness are says what those of the outer one are: moving both together changes nothing. Only the weight of the
-//! balls does not turn with the outer race; its part in the stiffness is left out, which costs an iteration. What keeps
-//! balls in their orbits about the outer race's axis sums to a force on it that has no energy.
+//! The energy of the contacts depends on the inner race relative to the outer one. So the load and stiffness of the
+//! outer race follow from those of the inner one: a common motion changes nothing. Only the weight of the balls does
+//! not rotate with the outer race; its part in the stiffness is omitted, which costs an iteration. The cage forces that
+//! keep balls at their azimuths sum to a force on the outer race without an energy.
 
 use crate::assembly::mount::Mount;
 use crate::assembly::plan::Stage;
@@ -49,7 +49,7 @@ pub(crate) fn planes(
     }));
 }
 
-/// Adds energy, force and stiffness of one bearing. Counts evaluations of a ball against a race.
+/// Adds energy, force and stiffness of one bearing. Counts evaluations of a ball on a race.
 pub(crate) fn add_bearing(
     model: &Model,
     index: usize,
@@ -93,8 +93,7 @@ pub(crate) fn add_bearing(
             on_race = add_to_race(plane, &race, &of.contacts, ball, &mut gradient, &mut stiffness);
         }
         if moves.is_some() {
-            // Balls ride on the outer race: it takes what the inner one puts on them, their weight, and what
-            // keeps them in their orbit.
+            // The outer race carries the balls' load from the inner one, their weight, and the cage forces.
             let place = ball.as_ref().map_or([0.0, bearing.geometry.pitch_radius], |b| b.position);
             let flung = plane.radial * (plane.centrifugal * place[1]);
             let pushed = on_race - of.weight - flung;
@@ -144,32 +143,32 @@ pub(crate) fn add_bearing(
     }
 }
 
-/// Both races of a bearing, and energy's slope and curvature over the inner one's centre and tilts.
+/// Both races of a bearing, and gradient and curvature of the energy over the inner one's centre and tilts.
 struct Pair {
     race: InnerRacePosition,
     gradient: Five,
     stiffness: Block,
     outer_race: InnerRacePosition,
-    /// Motion of the outer race's centre, and tilts, for each coordinate of its body.
+    /// Motion of the outer race's centre, and tilts, per coordinate of its body.
     outer_by: Block,
-    /// About which these tilts turn it.
+    /// Axes of these tilts.
     tilt_axes: [Vector3<f64>; 2],
 }
 
 impl Pair {
-    /// Stiffness over the coordinates of the outer race's body, and between those of the inner race's (rows) and
+    /// Stiffness over the coordinates of the outer race's body, and between those of the inner race's body (rows) and
     /// them (columns).
     ///
     /// With T the outer race's motion the energy is φ(T⁻¹c, T⁻¹a), c the inner race's centre and a its axis. For a
-    /// shift t and a turn θ of the outer race, r from its centre to the inner one's, T⁻¹ moves c by
-    /// δc − t − θ×r − θ×(δc − t) + ½ θ×(θ×r), a likewise; θ = e₂ δξ + e₃ δλ + ½ e₂×e₃ δξδλ.
+    /// displacement t and a rotation θ of the outer race, r from its centre to the inner one's, T⁻¹ moves c by δc − t −
+    /// θ×r − θ×(δc − t) + ½ θ×(θ×r), a likewise; θ = e₂ δξ + e₃ δλ + ½ e₂×e₃ δξδλ.
     fn stiffness(&self, inner_by: &Block, outer_mount: &Mount) -> (Block, Block) {
         let ([a_xi, a_lambda], [a_xi_xi, a_xi_lambda, _]) = self.race.turning();
         let axis = &self.race.axis;
         let arm = self.race.centre - self.outer_race.centre;
         let g = &self.gradient;
         let force = Vector3::new(g[0], g[1], g[2]);
-        // Slope over the axis, across it.
+        // Gradient over the axis, perpendicular to it.
         let per = [a_xi / a_xi.norm_squared(), a_lambda / a_lambda.norm_squared()];
         let swing = per[0] * g[3] + per[1] * g[4];
         let turn = Matrix3x5::from_columns(&[
@@ -180,7 +179,7 @@ impl Pair {
             self.tilt_axes[1],
         ]);
         let shift = self.outer_by.fixed_view::<3, 5>(0, 0).into_owned();
-        // First order: how the inner race would move that carries along.
+        // First order: motion of the inner race in a common motion.
         let mut carried = Block::zeros();
         carried.fixed_view_mut::<3, 5>(0, 0).copy_from(&(shift - arm.cross_matrix() * turn));
         let across = axis.cross_matrix();
@@ -198,7 +197,7 @@ impl Pair {
         own += turn.transpose() * turned_back(&force, &arm) * turn;
         let inner_shift = inner_by.fixed_view::<3, 5>(0, 0).into_owned();
         cross -= inner_shift.transpose() * pulled * turn;
-        // Of the axis, less what the stiffness over the tilts has counted of it.
+        // Second order of the axis, less what the stiffness over the tilts contains.
         own += turn.transpose() * turned_back(&swing, axis) * turn;
         let tilts = carried.fixed_view::<2, 5>(3, 0).into_owned();
         let bends = swing.dot(&a_xi_lambda);
@@ -208,7 +207,7 @@ impl Pair {
         let inner_axis = nalgebra::Matrix3x2::from_columns(&[a_xi, a_lambda]) * inner_tilts;
         cross += inner_tilts.transpose() * bent * tilts;
         cross -= inner_axis.transpose() * swing.cross_matrix() * turn;
-        // Of the turn.
+        // Second order of the rotation.
         let moment = arm.cross(&force) + axis.cross(&swing);
         let twist = 0.5 * self.tilt_axes[0].cross(&self.tilt_axes[1]).dot(&moment);
         own[(3, 4)] -= twist;
@@ -222,7 +221,7 @@ fn turned_back(f: &Vector3<f64>, r: &Vector3<f64>) -> Matrix3<f64> {
     0.5 * (f * r.transpose() + r * f.transpose()) - Matrix3::identity() * f.dot(r)
 }
 
-/// By how much a unit of each coordinate of its body, whose axes are turned by `axes`, moves a race: centre and tilts.
+/// Centre and tilts of a race per unit of each coordinate of its body, whose axes are rotated by `axes`.
 pub(crate) fn motion_of_race(
     race: &InnerRacePosition,
     mount: &Mount,
@@ -241,7 +240,7 @@ pub(crate) fn motion_of_race(
     motion
 }
 
-/// Stiffness that a force on a race has by the curvature of the path of the race's centre.
+/// Stiffness of a force on a race by the curvature of the path of the race's centre.
 pub(crate) fn bending(race: &InnerRacePosition, mount: &Mount, force: &Vector3<f64>) -> Block {
     let mut stiffness = Block::zeros();
     if mount.along != 0.0 {

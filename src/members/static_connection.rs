@@ -1,4 +1,4 @@
-//! Springs between bodies in an equilibrium: dashpots push nothing, Maxwell elements have relaxed.
+//! Springs between bodies in an equilibrium: dashpots have no force, Maxwell elements are relaxed.
 
 use crate::equilibrium::model::{Evaluation, Five, Model};
 use crate::kinematics::Pose;
@@ -8,10 +8,10 @@ use crate::members::rigid_body;
 use crate::members::rigid_body::BodyKinematics;
 use nalgebra::{DMatrix, Vector3};
 
-/// A body, about what its tilts turn it, and the axes of its coordinates.
+/// A body, its tilt axes, and the axes of its coordinates.
 type End<'m> = (BodyKinematics, [Vector3<f64>; 2], Option<&'m Pose>);
 
-/// Where a connection holds its bodies.
+/// The two ends of a connection.
 struct Joined<'m> {
     bodies: [End<'m>; 2],
     ends: [BodyKinematics; 2],
@@ -33,7 +33,7 @@ impl<'m> Joined<'m> {
         Joined { bodies, ends, firsts }
     }
 
-    /// Of a force at a section along its body's coordinates.
+    /// Components of a wrench at a section along its body's coordinates.
     fn conjugate(&self, end: usize, force: Vec3, moment: Vec3) -> Five {
         let (body, [e2, e3], axes) = &self.bodies[end];
         let arm = sub(self.ends[end].motion.position, body.motion.position);
@@ -43,14 +43,14 @@ impl<'m> Joined<'m> {
         Five::from([force[0], force[1], force[2], moment.dot(e2), moment.dot(e3)])
     }
 
-    /// Adds what each row does with this size of it.
+    /// Adds the product of each row with itself, times `size`.
     fn add_rows(&self, rows: &[Row], size: impl Fn(&Row) -> f64, to: &mut DMatrix<f64>) {
         for row in rows.iter().filter(|row| size(row) != 0.0) {
             self.add_product([row, row], size(row), to);
         }
     }
 
-    /// Adds what pushes along one row by so much for what has gone along another.
+    /// Adds the product of two rows, times `size`.
     fn add_product(&self, rows: [&Row; 2], size: f64, to: &mut DMatrix<f64>) {
         let levers =
             rows.map(|row| [0, 1].map(|end| self.conjugate(end, row.on[end][0], row.on[end][1])));
@@ -79,8 +79,9 @@ pub(crate) fn add_connection(model: &Model, connection: &Connection, here: &mut 
     joined.add_rows(&connection.rows(ends), |row| row.stiffness, &mut here.stiffness);
 }
 
-/// What its dashpots do because they turn with the first body, that body's spin `spin` (per rad/s of the speed that is asked for),
-/// where the stiffness is: a place q that stands still moves by −Ω × q in their axes, −c (q̇ − Ω × q). They are alike along Y and Z.
+/// Adds the circulation of its dashpots that rotate with the first body, of spin `spin` (per rad/s of the reference
+/// speed), to the stiffness: a fixed position q moves by −Ω × q in their axes, −c (q̇ − Ω × q). They are equal along Y
+/// and Z.
 pub(crate) fn add_circulation(
     model: &Model,
     connection: &Connection,
@@ -96,7 +97,8 @@ pub(crate) fn add_circulation(
     }
 }
 
-/// How far the ends go along its six directions for a unit of each coordinate, those of sections behind the unknowns.
+/// Displacements of the ends along its six directions per unit of each coordinate; those of sections follow the
+/// unknowns.
 pub(crate) fn levers(model: &Model, connection: &Connection, here: &Evaluation) -> DMatrix<f64> {
     let joined = Joined::new(model, connection, here);
     let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);
@@ -112,13 +114,13 @@ pub(crate) fn levers(model: &Model, connection: &Connection, here: &Evaluation) 
     levers
 }
 
-/// The spin of its first end's axes where the body below turns by `spin`: a reversed end has its own X the other way.
+/// Spin of its first end's axes for the spin `spin` of the body: a reversed end has the opposite X.
 pub(crate) fn spin_of(model: &Model, connection: &Connection, spin: f64, here: &Evaluation) -> f64 {
     let joined = Joined::new(model, connection, here);
     spin * dot(joined.ends[0].motion.axis, joined.bodies[0].0.motion.axis)
 }
 
-/// Its dashpots, where the stiffness is.
+/// Adds its damping to the stiffness.
 pub(crate) fn add_damping(model: &Model, connection: &Connection, here: &mut Evaluation) {
     let joined = Joined::new(model, connection, here);
     let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);

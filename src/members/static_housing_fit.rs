@@ -1,5 +1,5 @@
-//! What a race in a flexible bore brings to the search for an equilibrium: energy, load and stiffness over the
-//! coordinates of the body that carries it, the bore's nodes eliminated.
+//! A race in a flexible bore in the equilibrium search: energy, load and stiffness over the coordinates of its body,
+//! with the bore nodes eliminated.
 
 use crate::assembly::mount::Mount;
 use crate::equilibrium::model::{Evaluation, Five, Model};
@@ -9,18 +9,18 @@ use crate::members::static_bearing::motion_of_race;
 use crate::solids::bore_equilibrium::BoreSearch;
 use nalgebra::{Matrix3, SMatrix, Vector3, Vector4};
 
-/// Where a race is in its bore, and what the coordinates of its body do to that.
+/// Position of a race in its bore, and its derivatives by the coordinates of its body.
 pub struct SeatPlace {
     /// y, z (m), tilts about Y and Z (rad) from the nominal pose, in its axes.
     pub pose: [f64; 4],
-    /// By how much a unit of each coordinate of the body changes them.
+    /// Derivatives of the pose by each coordinate of the body.
     by: SMatrix<f64, 4, 5>,
-    /// Where the body's coordinates are not those of the seat.
+    /// `None` if the body's coordinates are those of the housing fit.
     race: Option<InnerRacePosition>,
 }
 
 impl SeatPlace {
-    /// Of a race that is its body, whose coordinates count from the nominal pose.
+    /// For a race that is its body, with coordinates relative to the nominal pose.
     pub(crate) fn direct(coordinates: &Five) -> SeatPlace {
         let by = SMatrix::<f64, 4, 5>::from_fn(|i, j| if j == i + 1 { 1.0 } else { 0.0 });
         let pose = [coordinates[1], coordinates[2], coordinates[3], coordinates[4]];
@@ -31,7 +31,7 @@ impl SeatPlace {
         self.race.is_none()
     }
 
-    /// Of a race given in the nominal axes; those of its body's coordinates are turned by `axes` against them.
+    /// For a race in the nominal axes; its body's coordinates are rotated by `axes` relative to them.
     pub fn new(race: InnerRacePosition, mount: &Mount, axes: &Matrix3<f64>) -> SeatPlace {
         let (centre, a) = (&race.centre, &race.axis);
         let tilts = [libm::atan2(-a.z, a.x), libm::asin(a.y.clamp(-1.0, 1.0))];
@@ -47,13 +47,13 @@ impl SeatPlace {
         SeatPlace { pose: [centre.y, centre.z, tilts[0], tilts[1]], by, race: Some(race) }
     }
 
-    /// A load along the four coordinates of the seat, along those of the body.
+    /// Load along the coordinates of the body, from one along the four coordinates of the housing fit.
     pub fn load(&self, load: &Vector4<f64>) -> Five {
         self.by.transpose() * load
     }
 
-    /// Stiffness over the coordinates of the body, that of the seat given; its load adds what the curvature of the
-    /// coordinates makes of it.
+    /// Stiffness over the coordinates of the body, from that of the housing fit and its load, with the curvature of the
+    /// coordinates.
     pub fn stiffness(
         &self,
         stiffness: &SMatrix<f64, 4, 4>,
@@ -87,10 +87,11 @@ impl SeatPlace {
     }
 }
 
-/// Adds energy, load and stiffness of one seat.
+/// Adds energy, load and stiffness of one housing fit.
 ///
 /// # Errors
-/// Contact that does not settle.
+///
+/// Contact that does not converge.
 pub(crate) fn add_seat(
     model: &Model,
     index: usize,

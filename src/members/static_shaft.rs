@@ -1,8 +1,9 @@
-//! Shafts that bend, in an equilibrium: sections follow their body and the amplitudes of its shapes.
+//! Flexible shafts in an equilibrium: sections follow their body and the modal amplitudes.
 //!
-//! What takes hold of a section adds energy, load and stiffness over the section's own five coordinates s, as over those
-//! of any body; they are then taken to the unknowns q by s(q): the slope is ∂s/∂qᵀ g, the stiffness ∂s/∂qᵀ K ∂s/∂q and
-//! what the curvature of s makes of g. A section stands where [`Section::place`](crate::members::flexible_shaft::Section::place) puts it in motion.
+//! An attachment adds energy, load and stiffness over the section's own five coordinates s, as over those of any body.
+//! They are then transformed to the unknowns q by s(q): the gradient ∂s/∂qᵀ g, the stiffness ∂s/∂qᵀ K ∂s/∂q plus the
+//! curvature of s times g. A section has the position of
+//! [`Section::place`](crate::members::flexible_shaft::Section::place) in motion.
 
 use crate::assembly::static_lists::{Place, StaticSection, StaticShaft};
 use crate::equilibrium::model::{Evaluation, Five, Model};
@@ -10,21 +11,20 @@ use crate::kinematics::euler::quaternion;
 use crate::members::race_position::InnerRacePosition;
 use nalgebra::{DMatrix, DVector, Dyn, Matrix2, Matrix3, OMatrix, U5, Vector3};
 
-/// One section where its shaft is now.
+/// Position of one section.
 pub struct SectionPlace {
     pub coordinates: Five,
     axis: Vector3<f64>,
-    /// From the body's centre to the section's.
+    /// Vector from the body's centre to the section's.
     arm: Vector3<f64>,
     turn: Matrix3<f64>,
-    /// sin τ/τ and its slope over τ², α and β: the section's turn towards e₂ and e₃.
+    /// sin τ/τ and its slope over τ², α and β: the section's rotation towards e₂ and e₃.
     bent: [f64; 4],
-    /// By how much a unit of each amplitude of bending brings the section nearer to the body's centre; none of a section
-    /// that keeps its distance.
+    /// Shortening towards the body's centre per unit of each bending amplitude; empty if omitted.
     nearer: Vec<f64>,
 }
 
-/// Where the unknowns of a section are: first of its body (none where it is held), first of its shaft.
+/// First unknown of a section's body (`None` if it is fixed) and of its shaft.
 type Firsts = (Option<usize>, usize);
 
 fn along(shape: &[f64], amplitudes: &[f64]) -> f64 {
@@ -32,7 +32,7 @@ fn along(shape: &[f64], amplitudes: &[f64]) -> f64 {
 }
 
 impl SectionPlace {
-    /// On a body at these coordinates, bent by these amplitudes.
+    /// Section of a body at these coordinates, with these amplitudes.
     pub fn new(of: &StaticSection, body: &Five, amplitudes: &[f64]) -> SectionPlace {
         let section = &of.section;
         let (a, rest) = amplitudes.split_at(section.deflection.len());
@@ -53,7 +53,7 @@ impl SectionPlace {
         let (towards_2, towards_3) = (along(&section.turn, a), along(&section.turn, b));
         let square = towards_2 * towards_2 + towards_3 * towards_3;
         let angle = square.sqrt();
-        // Series serve small angles.
+        // Series for small angles.
         let (sine, slope) = if angle < 1e-3 {
             (1.0 - square / 6.0 + square * square / 120.0, -1.0 / 6.0 + square / 60.0)
         } else {
@@ -73,7 +73,7 @@ impl SectionPlace {
         SectionPlace { coordinates, axis, arm, turn, bent, nearer }
     }
 
-    /// Slopes of centre and axis over the body's five coordinates and the amplitudes.
+    /// Derivatives of centre and axis by the body's five coordinates and the amplitudes.
     pub fn slopes(&self, of: &StaticSection) -> [Vec<Vector3<f64>>; 2] {
         let section = &of.section;
         let [e1, e2, e3] = [0, 1, 2].map(|i| self.turn.column(i).into_owned());
@@ -85,7 +85,7 @@ impl SectionPlace {
             centre.push(about.cross(&self.arm));
             axis.push(about.cross(&self.axis));
         }
-        // Of (cos τ, α sin τ/τ, β sin τ/τ) over α and β.
+        // Derivatives of (cos τ, α sin τ/τ, β sin τ/τ) by α and β.
         let across = 2.0 * slope * towards_2 * towards_3;
         let by_2 =
             Vector3::new(-sine * towards_2, sine + 2.0 * slope * towards_2 * towards_2, across);
@@ -104,7 +104,7 @@ impl SectionPlace {
         [centre, axis]
     }
 
-    /// ∂s/∂q over the same, for slopes of centre and axis, and the axis's own over the section's tilts.
+    /// ∂s/∂q over the same, from the derivatives of centre and axis, and those of the axis by the section's tilts.
     pub fn motion(
         &self,
         [centre, axis]: &[Vec<Vector3<f64>>; 2],
@@ -119,7 +119,7 @@ impl SectionPlace {
         (motion, Tilts { per, xi_xi, xi_lambda })
     }
 
-    /// What the curvature of s(q) makes of the slope `gradient` over s.
+    /// Curvature of s(q) times the gradient `gradient` over s.
     pub fn curvature(
         &self,
         of: &StaticSection,
@@ -138,7 +138,7 @@ impl SectionPlace {
         let count = centre.len();
         let mut curved = DMatrix::zeros(count, count);
         let abouts = [Vector3::y(), e3];
-        // Tilts of the body turn whatever there is; the earlier of two tilts turns the later one's axis.
+        // Tilts of the body rotate everything; the first of two tilts rotates the axis of the second.
         for (one, about) in abouts.iter().enumerate() {
             for other in one..2 {
                 let [centre, axis] =
@@ -150,7 +150,7 @@ impl SectionPlace {
                     force.dot(&about.cross(&centre[k])) + swing.dot(&about.cross(&axis[k]));
             }
         }
-        // Of (cos τ, α sin τ/τ, β sin τ/τ), as far as it counts in turns that are small.
+        // Second derivatives of (cos τ, α sin τ/τ, β sin τ/τ) for small rotations.
         let second = |v: [f64; 3]| swing.dot(&(self.turn * Vector3::from(v)));
         let both = second([0.0, -towards_3 / 3.0, -towards_2 / 3.0]);
         let bent = [
@@ -168,7 +168,7 @@ impl SectionPlace {
             }
         }
         curved.fill_lower_triangle_with_upper_triangle();
-        // What the stiffness over the section's tilts has counted.
+        // Less what the stiffness over the section's tilts contains.
         let cross = swing.dot(&tilts.xi_lambda);
         let counted = Matrix2::new(swing.dot(&tilts.xi_xi), cross, cross, 0.0);
         let tilting = motion.fixed_rows::<2>(3);
@@ -176,14 +176,14 @@ impl SectionPlace {
     }
 }
 
-/// Of a section's axis over its own tilts: reciprocal slopes and second derivatives.
+/// Derivatives of a section's axis by its own tilts: reciprocal first and second derivatives.
 pub struct Tilts {
     per: [Vector3<f64>; 2],
     xi_xi: Vector3<f64>,
     xi_lambda: Vector3<f64>,
 }
 
-/// Energy, load and stiffness of the shapes' springs.
+/// Energy, load and stiffness of the modal springs.
 pub(crate) fn add_shaft(shaft: &StaticShaft, first: usize, here: &mut Evaluation) {
     for (k, spring) in shaft.springs.iter().enumerate() {
         let i = first + k;
@@ -194,10 +194,10 @@ pub(crate) fn add_shaft(shaft: &StaticShaft, first: usize, here: &mut Evaluation
     }
 }
 
-/// How a section follows the unknowns.
+/// Dependence of a section on the unknowns.
 pub(crate) struct Moved<'m> {
     of: &'m StaticSection,
-    /// First of its own coordinates, behind the unknowns.
+    /// First of its own coordinates, which follow the unknowns.
     own: usize,
     place: SectionPlace,
     slopes: [Vec<Vector3<f64>>; 2],
@@ -227,7 +227,7 @@ fn all_sections<'m>(model: &'m Model) -> impl Iterator<Item = (usize, &'m Static
     })
 }
 
-/// What the curvature of places of sections makes of the slopes there.
+/// Adds the curvature of the sections' positions times the gradient.
 pub(crate) fn add_curvature(moved: &[Moved], here: &mut Evaluation) {
     for Moved { of, own, place, slopes, motion, tilts, columns } in moved {
         let gradient: Five = here.gradient.fixed_rows::<5>(*own).into_owned();
@@ -240,7 +240,7 @@ pub(crate) fn add_curvature(moved: &[Moved], here: &mut Evaluation) {
     }
 }
 
-/// Takes slope and stiffness over sections, behind the unknowns, to the unknowns.
+/// Transforms gradient and stiffness over sections, which follow the unknowns, to the unknowns.
 pub(crate) fn onto_unknowns(model: &Model, moved: &[Moved], here: &mut Evaluation) {
     let unknowns = model.scale.len();
     for Moved { own, motion, columns, .. } in moved {
@@ -263,7 +263,7 @@ pub(crate) fn onto_unknowns(model: &Model, moved: &[Moved], here: &mut Evaluatio
     here.stiffness.resize_mut(unknowns, unknowns, 0.0);
 }
 
-/// Takes rows over sections, behind the unknowns, to the unknowns.
+/// Transforms rows over sections, which follow the unknowns, to the unknowns.
 pub(crate) fn rows_onto_unknowns(
     model: &Model,
     moved: &[Moved],
@@ -279,7 +279,7 @@ pub(crate) fn rows_onto_unknowns(
     rows.columns(0, model.scale.len()).into_owned()
 }
 
-/// Columns of a section's motion, and where the unknowns of each are.
+/// Columns of a section's motion, and the index of each unknown.
 fn columns((body, shaft): Firsts, count: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..count).filter_map(move |i| Some((i, if i < 5 { body? + i } else { shaft + i - 5 })))
 }

@@ -1,15 +1,16 @@
-//! Unbalances of bodies (4.3.4): a mass beside the axis, small against the body, with u = m e (kg·m).
+//! Unbalance of bodies (4.3.4): an eccentric mass, small compared with the body, u = m e (kg·m).
 //!
-//! Where the speed is given its force u (Ω² n − Ω̇ τ) is known, n outwards and τ the way it goes round. Where a torque turns the
-//! body Ω̇ is not: besides its own kinetic energy, which the body's has, the mass gives u Ω τ·v, v the velocity where it sits. With q̇ all
-//! velocities but the spin, those of shapes among them, and b = Σ u ∂(τ·v)/∂q̇,
+//! With a prescribed speed its force u (Ω² n − Ω̇ τ) is known, n outwards and τ in the direction of rotation. With a
+//! torque Ω̇ is unknown: beyond the kinetic energy contained in the body's, the mass has u Ω τ·v, v the velocity at its
+//! position. With q̇ all velocities but the spin, those of modes among them, and b = Σ u ∂(τ·v)/∂q̇,
 //!
 //! M q̈ = f − b Ω̇,
+//!
 //! I Ω̇ = T − b·q̈,
 //!
-//! f with the centrifugal forces, so that Ω̇ = (T − b·M⁻¹f) / (I − b·M⁻¹b). What the rotor's vibration takes of its spin holds a
-//! run-up by a weak torque back at the critical speed. Weight acts at the unbalance too, which makes the body a pendulum. Left
-//! out is the share that the mass has in the tilting of the body.
+//! f with the centrifugal forces, so that Ω̇ = (T − b·M⁻¹f) / (I − b·M⁻¹b). The vibration of the rotor thus takes
+//! energy from its spin, and holds a run-up by a weak torque back at the critical speed. Weight acts at the unbalance
+//! too, which makes the body a pendulum. The inertia of the mass in tilting is omitted.
 
 use crate::assembly::lists::{Assembly, Body};
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};
@@ -19,19 +20,19 @@ use crate::members::flexible_shaft::{Bend, ElasticShaft, Section, SectionNow};
 use crate::members::rigid_body::{BodyKinematics, BodyRates, Wrench};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Outwards and the way it goes round, of an unbalance at `angle` from the Y of what is turned by `orientation` towards its Z.
+/// Outward and tangential direction of an unbalance at `angle` from Y towards Z of `orientation`.
 pub(crate) fn directions(orientation: &UnitQuaternion<f64>, angle: f64) -> [Vec3; 2] {
     let (sin, cos) = libm::sincos(angle);
     [[cos, sin], [-sin, cos]].map(|[y, z]| (orientation * Vector3::new(0.0, y, z)).into())
 }
 
-/// −u Ω ω × τ, N: what turns the momentum u Ω τ of an unbalance with what it sits on, whose angular velocity is ω. It is the
-/// centrifugal force, and a pull along the axis as that tilts.
+/// −u Ω ω × τ, N: rate of the momentum u Ω τ of an unbalance on a body of angular velocity ω. It is the centrifugal
+/// force, and an axial force as the axis tilts.
 pub(crate) fn turning_momentum(size: f64, spin: f64, angular: Vec3, forward: Vec3) -> Vec3 {
     scale(cross(angular, forward), -size * spin)
 }
 
-/// Whether a torque turns a body that has an unbalance.
+/// Returns whether a body with an unbalance is driven by a torque.
 pub fn swings(assembly: &Assembly, body: usize) -> bool {
     let of = &assembly.bodies[body];
     let by_torque = of.driven().is_some_and(|of| matches!(of.rotation, Rotation::Torque(_)));
@@ -39,8 +40,8 @@ pub fn swings(assembly: &Assembly, body: usize) -> bool {
     by_torque && (of.unbalance != 0.0 || assembly.shafts.iter().any(on_shaft))
 }
 
-/// b·M⁻¹b of the unbalances of a shaft that does not bend yet, kg·m²: the inertia about the axis that such masses have at least where
-/// they sit, on a shaft of this mass (kg) and moment of inertia across the axis (kg·m²) and its shapes.
+/// b·M⁻¹b of the unbalances of a straight shaft, kg·m²: the smallest axial inertia of such masses, on a shaft of this
+/// mass (kg) and transverse moment of inertia (kg·m²) and its modes.
 pub fn least_inertia(shaft: &ElasticShaft, mass: f64, transverse: f64) -> f64 {
     let along = |direction: usize| {
         let parts = shaft.unbalances.iter().map(|of| {
@@ -57,10 +58,10 @@ pub fn least_inertia(shaft: &ElasticShaft, mass: f64, transverse: f64) -> f64 {
     along(0) + along(1)
 }
 
-/// A shaft that bends, its entries in the state.
+/// A flexible shaft and its entries in the state.
 pub(crate) type Bent<'s> = (&'s ElasticShaft, &'s [f64]);
 
-/// The shaft that bends of a body and its first entry in the state, `firsts` those of all.
+/// The flexible shaft of a body and its entries; `firsts` are those of all shafts.
 pub(crate) fn bent_of<'s>(
     assembly: &'s Assembly,
     firsts: &[usize],
@@ -72,10 +73,10 @@ pub(crate) fn bent_of<'s>(
     Some((at, (shaft, &state[at..at + shaft.entries()])))
 }
 
-/// An unbalance where it is: kg·m, outwards and the way it goes round, what it sits on.
+/// An unbalance at its position: kg·m, outward and tangential direction, kinematics of its section or body.
 type Turning<'t> = (f64, [Vec3; 2], &'t BodyKinematics);
 
-/// Calls for each unbalance of a body, with the section it is on.
+/// Calls `of` for each unbalance of a body, with its section.
 fn each(
     (body, now): (&Body, &BodyKinematics),
     bent: Option<Bent>,
@@ -94,7 +95,7 @@ fn each(
     }
 }
 
-/// Kinetic energy u Ω τ·v that the unbalances of a body turned by a torque add, and what lies in their weight, J.
+/// Kinetic energy u Ω τ·v of the unbalances of a body driven by a torque, and the energy of their weight, J.
 pub(crate) fn energies(
     of: (&Body, &BodyKinematics),
     bent: Option<Bent>,
@@ -109,22 +110,22 @@ pub(crate) fn energies(
     energies
 }
 
-/// What Ω̇ = 1 rad/s² makes the unbalances of a body load it with, negated: b.
+/// Inertial loads of a body's unbalances per rad/s² of Ω̇, negated: b.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnbalanceCoupling {
     on_body: Wrench,
-    /// On the shapes of its shaft, as [`crate::members::flexible_shaft::Section::take`] has them.
+    /// Modal forces of its shaft, as in [`crate::members::flexible_shaft::Section::take`].
     on_shapes: Vec<f64>,
 }
 
 impl UnbalanceCoupling {
-    /// With room for the shafts of an assembly.
+    /// With memory for the shafts of an assembly.
     pub(crate) fn new(assembly: &Assembly) -> UnbalanceCoupling {
         let most = assembly.shafts.iter().map(ElasticShaft::amplitudes).max();
         UnbalanceCoupling { on_body: Wrench::default(), on_shapes: vec![0.0; most.unwrap_or(0)] }
     }
 
-    /// Takes the unbalances of a body where they are, and adds their weight, which pulls where they are, to its loads.
+    /// Updates the unbalances of a body, and adds their weight at their positions to its loads.
     pub(crate) fn update(
         &mut self,
         of: (&Body, &BodyKinematics),
@@ -138,7 +139,8 @@ impl UnbalanceCoupling {
         on_shapes.fill(0.0);
         each(of, bent, |(size, [outwards, forward], _), section| {
             let force = Wrench { force: scale(forward, size), moment: [0.0; 3] };
-            // About the axis: across it weight is balanced by what the mass does as the body tilts, which is left out.
+            // About the axis only: across it weight is balanced by the inertia of the mass in tilting, which is
+            // omitted.
             let axis = of.1.motion.axis;
             let pull = add_scaled(gravity, -dot(gravity, axis), axis);
             let moment = scale(cross(outwards, pull), size);
@@ -156,8 +158,8 @@ impl UnbalanceCoupling {
         });
     }
 
-    /// Adds to the loads of a body and its shapes what the unbalances do as its spin changes. `free` are the rates without
-    /// that, `pushes` the accelerations of the shapes.
+    /// Adds the inertial loads of the unbalances to a body and its modes. `free` are the rates without them, `pushes`
+    /// the modal accelerations.
     pub(crate) fn add_to(
         &self,
         (body, now): (&DrivenBody, &BodyKinematics),
@@ -168,7 +170,7 @@ impl UnbalanceCoupling {
         let Wrench { force, moment } = self.on_body;
         let (axis, spin) = (now.motion.axis, now.motion.spin);
         let tilting = add_scaled(spin, -dot(spin, axis), axis);
-        // dω/dt across the axis has a part Ω ȧ, which belongs to the spin that turns with the axis.
+        // dω/dt across the axis contains Ω ȧ, which belongs to the spin that rotates with the axis.
         let turned = scale(cross(tilting, axis), dot(spin, axis));
         let tilted = sub(free.spin_rate, turned);
         let inertia = &body.inertia;
@@ -184,8 +186,8 @@ impl UnbalanceCoupling {
             + about.sum::<f64>() / inertia.transverse
             + self.on_shapes.iter().map(|swing| swing * swing).sum::<f64>();
         let own = dot(free.spin_rate, axis);
-        // A mass beside the axis has an inertia of its own, which is part of the body's: a body without it is none, whose
-        // motion has no value.
+        // An eccentric mass has an axial inertia, which is part of the body's: a body with less is invalid, and its
+        // motion is NaN.
         let left = Some(inertia.axial - given_way).filter(|left| *left > 0.0);
         let rate = (inertia.axial * own - taken) / left.unwrap_or(f64::NAN);
         loads.force = add_scaled(loads.force, -rate, force);

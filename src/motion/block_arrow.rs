@@ -1,8 +1,8 @@
-//! The matrix of a linearly implicit step, M + hγ D + h²γ² K over all velocities: balls touch hubs
-//! (races, cage) and never each other, so that each ball is eliminated into the hubs and what
-//! remains is six equations for each body that moves; shapes of reduced solids are eliminated likewise.
+//! The matrix of a linearly implicit step, M + hγ D + h²γ² K over all velocities. Balls touch hubs (races, cage) and
+//! are not coupled with each other. Each ball is eliminated into its hubs, as are the modes of reduced solids; six
+//! equations for each moving body remain.
 //!
-//! Balls are eliminated a block of [`LANES`] at a time, with every driver.
+//! Balls are eliminated in blocks of [`LANES`], with every kernel.
 
 use crate::assembly::state::{
     LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
@@ -21,10 +21,10 @@ use crate::motion::linearised_shafts::Bending;
 use crate::motion::system::System;
 use nalgebra::Quaternion;
 
-/// Most hubs a ball touches: two races and a cage.
+/// Largest number of hubs of a ball: two races and a cage.
 const HUBS: usize = 3;
 
-/// A factored matrix and room to solve with it.
+/// A factored matrix and its working memory.
 #[derive(Clone, Debug)]
 pub struct BlockArrowMatrix {
     /// Of each bearing.
@@ -33,18 +33,18 @@ pub struct BlockArrowMatrix {
     scale: f64,
     /// LDLᵀ of each block's 6 × 6, upper triangle, reciprocal pivots on the diagonal.
     factors: Vec<Block>,
-    /// Ball's matrix⁻¹ · coupling to each hub that a block touches.
+    /// Inverse matrix of the balls times their coupling to each hub of the block.
     eliminated: Vec<[Block; HUBS]>,
-    /// Which of them are not zero.
+    /// True where the coupling is not zero.
     coupled: Vec<[bool; HUBS]>,
     schur: LdltMatrix,
-    /// Where bodies bend.
+    /// `None` without flexible bodies.
     bending: Option<Bending>,
     balls: Vec<[Lane; 6]>,
-    /// Of all hubs: right-hand side and rates; what they have moved.
+    /// Right-hand side and rates of all hubs; their displacements.
     hubs: Vec<f64>,
     moved: Vec<[f64; 6]>,
-    /// Of each reduced solid.
+    /// Block of each reduced solid.
     solids: Vec<SolidBlock>,
 }
 
@@ -147,7 +147,7 @@ impl BlockArrowMatrix {
         for first in 0..HUBS {
             for second in first..HUBS {
                 let (Some(one), Some(other)) = (hub(first), hub(second)) else { continue };
-                // The upper triangle alone is kept.
+                // Only the upper triangle is kept.
                 let (rows, columns) = if one <= other { (first, second) } else { (second, first) };
                 let (row, column) = (one.min(other), one.max(other));
                 let eliminated = &self.eliminated[block][columns];
@@ -165,10 +165,9 @@ impl BlockArrowMatrix {
         }
     }
 
-    /// Solves (1 − hγ J) w = r for all entries of the state; `at` is the state of the Jacobian.
-    /// Nothing feeds back from the ledger and the orientation of balls: what drives of prescribed
-    /// motions do follows the rest of `w`, their other entries are those of `r`. `drift` is how
-    /// frames carry balls and turn bodies besides, component by component: contacts close by it.
+    /// Solves (1 − hγ J) w = r for all entries of the state; `at` is the state of the Jacobian. The ledger and the
+    /// orientation of balls do not feed back. Rates of prescribed motions follow from the rest of `w`, their other
+    /// entries are those of `r`. `drift` is the motion of the rotating frames, by which contacts close too.
     pub fn solve(
         &mut self,
         linearised: &Linearised,
@@ -281,7 +280,7 @@ impl BlockArrowMatrix {
                     power += drive_power(contact, at, &moved[hub], right, &rates[hub]);
                 }
             }
-            // Lanes beyond the last ball stand still.
+            // Lanes beyond the last ball do not move.
             let used = LANES.min(layout.balls - block.first.min(layout.balls));
             for i in 0..3 {
                 let place = |component: usize| layout.ball(component + i) + block.first;
@@ -324,8 +323,8 @@ fn vector(of: &[f64], at: usize) -> [f64; 3] {
     [of[at], of[at + 1], of[at + 2]]
 }
 
-/// Shift and turn of a hub in a vector of rates or increments and the turning of its frame; prescribed parts push
-/// nothing.
+/// Displacement and rotation of a hub in a vector of rates or increments, with the rotation of its frame; zero for
+/// prescribed parts.
 fn displacement(hub: &Hub, at: &[f64], r: &[f64], drift: &[f64]) -> [f64; 6] {
     let quaternion = |of: &[f64]| {
         let from = hub.at + ORIENTATION;

@@ -1,41 +1,43 @@
-//! Reduced solids in the matrix of a linearly implicit step: their shapes are eliminated into the hubs of the races that sit in them.
+//! Reduced solids in the matrix of a linearly implicit step: their modes are eliminated into the hubs of the races in
+//! their bores.
 //!
-//! With D the diagonal of the shapes' own equations, S what they are at the nodes that touch, L the levers of hubs there and k the
-//! nodes' stiffness, rates q of shapes and h of hubs push each node by p = hγ k (S (u + hγ q) + L (m + hγ h)), where u and m are the
-//! displacements in the right-hand side. So D q = f − Sᵀp, and what is left is one equation for each node that touches,
-//! (1/(h²γ² k) + S D⁻¹ Sᵀ) p = S (D⁻¹ f + u/hγ) + L (h + m/hγ). Where more nodes touch than there are shapes, in a tight fit of a fine
-//! mesh, the shapes' own equations with the nodes' springs in them are the fewer ones, D + h²γ² Sᵀ k S.
+//! Let D be the diagonal of the modal equations, S the modes at the contact nodes, L the levers of the hubs there, k
+//! the contact stiffnesses. Rates q of modes and h of hubs give the nodal forces p = hγ k (S (u + hγ q) + L (m + hγ
+//! h)), where u and m are the displacements in the right-hand side. With D q = f − Sᵀp one equation for each contact
+//! node remains, (1/(h²γ² k) + S D⁻¹ Sᵀ) p = S (D⁻¹ f + u/hγ) + L (h + m/hγ). If there are more contact nodes than
+//! modes, as in a tight fit of a fine mesh, the modal equations with the contact springs, D + h²γ² Sᵀ k S, are solved
+//! instead.
 
 use crate::members::reduced_solid::Surface;
 use crate::motion::elimination::LdltMatrix;
 use crate::motion::linearised::{Linearised, SeatRow, Shapes};
 use crate::motion::system::System;
 
-/// Shapes that are added to the matrix at a time: each pass over it is memory traffic.
+/// Modes added to the matrix at a time; each pass over it is memory traffic.
 const TOGETHER: usize = 4;
 
-/// Of one solid: its part of the matrix, and room to solve with it.
+/// Part of the matrix of one solid, and its working memory.
 #[derive(Clone, Debug)]
 pub(crate) struct SolidBlock {
-    /// Seats in it by their numbers in [`Linearised::seats`], and its surface under each.
+    /// Index in [`Linearised::seats`] of each housing fit, and its modes at the bore surface.
     seats: Vec<(usize, SeatShapes)>,
-    /// Of the races in them, in order.
+    /// Hubs of the races in its bores, in order.
     hubs: Vec<usize>,
-    /// Nodes that touch, with the number of their seat above.
+    /// Contact nodes, with the index of their housing fit above.
     rows: Vec<(usize, SeatRow)>,
     /// D⁻¹.
     yielding: Vec<f64>,
-    /// Whether the equations are those of the shapes.
+    /// True if the equations are those of the modes.
     by_shapes: bool,
-    /// Factored, and its inverse times what couples it to each hub: L, or B = h²γ² Sᵀ k L.
+    /// Factored matrix, and its inverse times the coupling to each hub: L, or B = h²γ² Sᵀ k L.
     matrix: LdltMatrix,
     levered: Vec<Vec<[f64; 6]>>,
     coupled: Vec<Vec<[f64; 6]>>,
-    /// p of each node that touches, and f and D⁻¹ f + u/hγ of each shape.
+    /// p of each contact node; f and D⁻¹ f + u/hγ of each mode.
     pushes: Vec<f64>,
     forces: Vec<f64>,
     gone: Vec<f64>,
-    /// Some shapes at the nodes that touch.
+    /// Some modes at the contact nodes.
     columns: [Vec<f64>; TOGETHER],
 }
 
@@ -80,7 +82,7 @@ impl SolidBlock {
         }
     }
 
-    /// Factors it for hγ = `scale`, and adds to `schur` how the nodes that touch hold the hubs.
+    /// Factors it for hγ = `scale`, and adds the stiffness of the contact nodes between hubs to `schur`.
     pub(crate) fn factor(
         &mut self,
         linearised: &Linearised,
@@ -110,7 +112,7 @@ impl SolidBlock {
         self.hold(schur);
     }
 
-    /// D + h²γ² Sᵀ k S, and what it and the nodes' springs hold the hubs with.
+    /// D + h²γ² Sᵀ k S, and its coupling to the hubs.
     fn factor_shapes(&mut self, scale: f64, schur: &mut LdltMatrix) {
         let SolidBlock { seats, hubs, rows, yielding, matrix, levered, coupled, .. } = self;
         let shapes = yielding.len();
@@ -155,7 +157,7 @@ impl SolidBlock {
         }
     }
 
-    /// [`SolidBlock::push`] with the equations of the shapes; what the shapes do where hubs stand still is in `gone` then.
+    /// [`SolidBlock::push`] with the modal equations; the modal rates at fixed hubs are left in `gone`.
     fn push_shapes(&mut self, scale: f64, places: &[f64], moved: &[[f64; 6]], to: &mut [f64]) {
         let SolidBlock { seats, hubs, rows, matrix, coupled, forces, gone, .. } = self;
         let shapes = forces.len();
@@ -211,7 +213,7 @@ impl SolidBlock {
         }
     }
 
-    /// Lᵀ times what the levers make, in the upper triangle over hubs.
+    /// Adds Lᵀ times the factored levers to the upper triangle over hubs.
     fn hold(&mut self, schur: &mut LdltMatrix) {
         let SolidBlock { seats, hubs, rows, matrix, levered, .. } = self;
         for (hub, levered) in hubs.iter().zip(levered) {
@@ -232,7 +234,8 @@ impl SolidBlock {
         }
     }
 
-    /// Takes what the displacements in `r` (hubs: `moved`) and the forces on the shapes push the hubs by from their right-hand sides.
+    /// Subtracts the forces of displacements in `r` (hubs: `moved`) and of modal forces from the right-hand sides of
+    /// the hubs.
     pub(crate) fn push(
         &mut self,
         solid: &Shapes,
@@ -270,7 +273,7 @@ impl SolidBlock {
         }
     }
 
-    /// Rates of the shapes from those of the hubs, after [`SolidBlock::push`].
+    /// Modal rates from the rates of the hubs, after [`SolidBlock::push`].
     pub(crate) fn follow(
         &mut self,
         solid: &Shapes,

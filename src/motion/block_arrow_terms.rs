@@ -1,4 +1,4 @@
-//! What contacts, joints and drives add to the matrix of a linearly implicit step and to its right-hand sides.
+//! Terms of contacts, joints and drives in the matrix of a linearly implicit step and in its right-hand sides.
 
 use crate::assembly::state::LANES;
 use crate::members::connection::MaxwellElement;
@@ -32,8 +32,8 @@ pub(crate) fn weigh(contact: &LaneContact, lever: &[[Lane; 6]; 4], scale: f64) -
     pushed
 }
 
-/// What a contact pushes back along its rows for displacements and velocities of ball and hub. The
-/// drift of a frame closes contacts; sliding turns with the frame and does not change by it.
+/// Restoring force of a contact along its rows for displacements and velocities of ball and hub. The rotation of a
+/// frame closes contacts; sliding rotates with the frame and does not change.
 #[inline(always)]
 fn reaction(
     contact: &LaneContact,
@@ -121,7 +121,7 @@ fn reaction(
     pushes
 }
 
-/// hγ K r: takes from the right-hand sides what the displacements in them push back.
+/// hγ K r: subtracts the restoring forces of displacements from the right-hand sides.
 pub(crate) fn spring_back(
     contact: &LaneContact,
     scale: f64,
@@ -152,7 +152,7 @@ pub(crate) fn spring_back(
     }
 }
 
-/// Change of the power of the drives that hold prescribed velocities.
+/// Change of the power of drives with prescribed velocities.
 pub(crate) fn drive_power(
     contact: &LaneContact,
     at: [&[Lane; 3]; 2],
@@ -176,7 +176,7 @@ pub(crate) fn add_joints(linearised: &Linearised, scale: f64, schur: &mut LdltMa
             add_joint(joint.hubs, row, weight, schur);
         }
     }
-    // de/dt = L v − e/τ, whose elongations are eliminated.
+    // de/dt = L v − e/τ, with elongations eliminated.
     for of in &linearised.relaxing {
         let joint = &linearised.joints[of.joint];
         for (i, row) in joint.rows.iter().enumerate() {
@@ -193,7 +193,7 @@ fn add_joint(hubs: [Option<usize>; 2], row: &JointRow, weight: f64, schur: &mut 
     for (a, rows) in hubs.into_iter().enumerate() {
         for (b, columns) in hubs.into_iter().enumerate() {
             let (Some(rows), Some(columns)) = (rows, columns) else { continue };
-            // The upper triangle alone is kept.
+            // Only the upper triangle is kept.
             if rows > columns {
                 continue;
             }
@@ -231,7 +231,7 @@ pub(crate) fn joint_forces(
     }
 }
 
-/// What the elongations of Maxwell elements in `r` push back.
+/// Restoring forces of the elongations of Maxwell elements in `r`.
 pub(crate) fn relaxing_forces(linearised: &Linearised, scale: f64, r: &[f64], hubs: &mut [f64]) {
     for of in &linearised.relaxing {
         let joint = &linearised.joints[of.joint];

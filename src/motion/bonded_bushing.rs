@@ -1,7 +1,7 @@
-//! A bushing of rubber elements bonded between two bodies, in steps of its own between two exchanges with them.
+//! A bushing of rubber elements bonded between two bodies, in its own steps between two exchanges of impulse.
 //!
-//! Nodes of its sleeves go where the bodies take them, which have these nodes' mass; what the elements pull there
-//! with is summed over a window and given to the bodies, as of a seat.
+//! The bodies prescribe the displacements of the sleeve nodes and have their mass. Forces of the elements on these
+//! nodes are summed over a coupling step and applied to the bodies, as those of a housing fit.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::plan::counts::Counts;
@@ -24,40 +24,41 @@ use crate::solids::rubber::steps::{RubberSolid, StepOptions};
 use crate::solids::tet4_blocks::Node;
 use nalgebra::Vector3;
 
-/// A bushing that takes part, as it starts.
+/// A bushing in coupled motion, at its start.
 #[derive(Clone, Debug)]
 pub struct BondedPart<'p> {
-    /// As columns and messages name it.
+    /// Name in columns and messages.
     pub name: String,
-    /// The bodies of its outer and of its inner sleeve, and where on their axes the middle of the bushing is.
+    /// Bodies of the outer and the inner sleeve, and the position of the bushing's middle on their axes.
     pub sleeves: [Sleeve; 2],
-    /// The springs that it is like, whose equilibrium a run starts from: with the relaxed stiffness of the elements.
+    /// Equivalent spring with the relaxed stiffness of the elements; the run starts from its equilibrium.
     pub spring: Connection,
     pub elements: BondedElements<'p>,
-    /// How far a body may swing on it in a window, rad.
+    /// Phase of a body on the bushing in a coupling step, rad.
     pub window_phase: f64,
 }
 
-/// Nodes of a bushing that a body carries.
+/// Bushing nodes that move with a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sleeve {
     /// Index of the body.
     pub body: usize,
     pub nodes: Vec<u32>,
-    /// Of the nodes from the body's centre before anything moves, m.
+    /// Initial position of the nodes from the body's centre, m.
     pub arms: Vec<Vec3>,
-    /// Centre of the body then, m.
+    /// Initial centre of the body, m.
     pub nominal: Vec3,
 }
 
 impl BondedPart<'_> {
-    /// Gives its spring the relaxed stiffness of the elements themselves, which coarse ones overrate: where a run starts
-    /// is then their own equilibrium.
+    /// Sets the stiffness of the equivalent spring to the relaxed stiffness of the elements, so that the run starts in
+    /// their own equilibrium. Coarse elements are too stiff.
     ///
     /// # Errors
+    ///
     /// Rubber without an equilibrium.
     pub(crate) fn measure(&mut self) -> Result<(), RubberError> {
-        // The first vector is the answer already.
+        // The first iteration vector is the solution already.
         const SETTLED: f64 = 1e-6;
         let mut model = match self.elements {
             BondedElements::Implicit { model, .. } => model.clone(),
@@ -95,7 +96,7 @@ impl BondedPart<'_> {
         Ok(())
     }
 
-    /// Whether its sleeves are not where they are undeformed.
+    /// Returns whether its sleeves are displaced.
     pub(crate) fn is_moved(&self, simulation: &Simulation) -> bool {
         let moved = |sleeve: &Sleeve| {
             let body = simulation.body(sleeve.body);
@@ -105,16 +106,16 @@ impl BondedPart<'_> {
     }
 }
 
-/// How the rubber is solved.
+/// Integration of the rubber.
 #[derive(Clone, Debug)]
 pub enum BondedElements<'p> {
-    /// Four-node elements in explicit steps (3.12) of so large a part of the longest one.
+    /// Four-node elements in explicit steps (3.12), a fraction of the longest stable one.
     Explicit { body: &'p RubberBody, fraction: f64 },
-    /// Implicit steps of at most so many seconds, if windows are longer.
+    /// Implicit steps, at most this long (s) if a coupling step is longer.
     Implicit { model: &'p RubberModel, step: Option<f64> },
 }
 
-/// The rubber on its way.
+/// Rubber in motion.
 pub enum BondedRubber<'p> {
     Explicit(Box<ExplicitSolid>),
     Implicit(Box<RubberSolid<'p>>),
@@ -124,47 +125,47 @@ pub enum BondedRubber<'p> {
 pub struct BondedBushing<'p> {
     pub name: String,
     pub sleeves: [SleeveNow; 2],
-    /// Which of them has the second body of the spring.
+    /// Index of the sleeve on the second body of the spring.
     pub second: usize,
     pub rubber: BondedRubber<'p>,
-    /// In a window, and how long, s.
+    /// Number of steps in a coupling step, and their length, s.
     pub steps: usize,
     pub step: f64,
-    /// The longest step that the rubber takes, s; without one a window is a step.
+    /// Longest step of the rubber, s; `None`: one step a coupling step.
     pub(crate) most: Option<f64>,
-    /// Against a sudden shift (N/m) and turn (N·m/rad) of a body.
+    /// Stiffness against a sudden displacement (N/m) and rotation (N·m/rad) of a body.
     pub(crate) stiffness: [f64; 2],
     pub(crate) window_phase: f64,
 }
 
-/// What a bushing does to the body of a sleeve.
+/// Loads of a bushing on the body of a sleeve.
 pub struct SleeveNow {
     pub sleeve: Sleeve,
-    /// On the body in the last step and in the one before it, about the body's centre.
+    /// Loads on the body about its centre, in the last step and in the one before it.
     pub loads: [Wrench; 2],
-    /// On the body since the start, J.
+    /// Work on the body since the start, J.
     pub work: f64,
-    /// In the present window: the body at the beginning; impulse (N·s) and moment of impulse (N·m·s) on it.
+    /// In the present coupling step: the body at its beginning; impulse (N·s) and angular impulse (N·m·s) on it.
     pub(crate) from: BodyState,
     handed: Wrench,
-    /// Mean accelerations of the window before, m/s² and rad/s²: the body goes on with them.
+    /// Mean accelerations of the previous coupling step, m/s² and rad/s², with which the body is extrapolated.
     pushed: [Vec3; 2],
-    /// The body where the rubber has it.
+    /// Extrapolated body at the time of the rubber.
     there: BodyState,
 }
 
-/// A bushing at one time, for the ledger, J.
+/// Energies of a bushing at one time, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BondedSnapshot {
-    /// Held by the network and by the springs of the Maxwell elements, and lost in their dashpots: the last two by the
-    /// law of small strain.
+    /// Energy stored by the network and by the springs of the Maxwell elements, and lost in their dashpots; the last
+    /// two by the law of small strain.
     pub network: f64,
     pub springs: f64,
     pub dissipated: f64,
-    /// What the stresses of the Maxwell elements did beyond that law.
+    /// Work of the Maxwell stresses beyond that law.
     pub beyond: f64,
     pub kinetic: f64,
-    /// On both bodies since the start, and on the way to where the rubber has them, half a step off.
+    /// Work on both bodies since the start, and up to the time of the rubber, half a step away.
     pub work: f64,
     pub to_come: f64,
     /// On the body of each sleeve now, about its centre.
@@ -178,7 +179,7 @@ impl BondedSnapshot {
 }
 
 impl Sleeve {
-    /// Where the nodes are displaced to while the body is here, m.
+    /// Displacements of the nodes for this state of the body, m.
     fn displacements(&self, body: &BodyState) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let shift = sub(body.position, self.nominal);
         let turn = body.orientation.into_inner();
@@ -209,7 +210,7 @@ impl SleeveNow {
         self.handed = Wrench::default();
     }
 
-    /// The body `after` s in the window, pushed as in the window before.
+    /// The body `after` s from the beginning of the coupling step, with the accelerations of the previous one.
     fn ahead(&self, after: f64) -> BodyState {
         let mut body = self.from;
         body.velocity = add_scaled(body.velocity, 0.5 * after, self.pushed[0]);
@@ -217,7 +218,7 @@ impl SleeveNow {
         carried_on(&body, after)
     }
 
-    /// The pulls on its nodes (N) `after` s in the window, over `step` s.
+    /// Books the forces on its nodes (N) `after` s from the beginning of the coupling step, over `step` s.
     fn take(&mut self, after: f64, step: f64, pull: impl Fn(u32) -> Vec3) {
         let body = self.ahead(after);
         let mut sum = Wrench::default();
@@ -230,17 +231,17 @@ impl SleeveNow {
         self.handed.moment = add_scaled(self.handed.moment, step, sum.moment);
     }
 
-    /// What the window's impulse comes to as a load over all of it, N and N·m.
+    /// Mean load of the impulse over the coupling step, N and N·m.
     pub(crate) fn mean_load(&self, window: f64) -> Wrench {
         mean_over(&self.handed, window)
     }
 
-    /// Books what that load did to the body while it came to `to`.
+    /// Books the work of that load on the body up to its state `to`.
     pub(crate) fn book(&mut self, window: f64, to: &BodyState) {
         self.work += work_on_way(&self.mean_load(window), &self.from, to);
     }
 
-    /// The load now: half a step after that of the last one.
+    /// Load now, half a step after that of the last step.
     fn load_now(&self) -> Wrench {
         let [last, before] = &self.loads;
         let on = |last: Vec3, before: Vec3| add_scaled(last, 0.5, sub(last, before));
@@ -249,10 +250,11 @@ impl SleeveNow {
 }
 
 impl<'p> BondedBushing<'p> {
-    /// At rest around its bodies where they are.
+    /// A bushing at rest around its bodies at their present positions.
     ///
     /// # Errors
-    /// Rubber that has no equilibrium there.
+    ///
+    /// Rubber without an equilibrium there.
     pub(crate) fn new(
         part: BondedPart<'p>,
         simulation: &Simulation,
@@ -282,7 +284,7 @@ impl<'p> BondedBushing<'p> {
         Ok(bushing)
     }
 
-    /// Undeformed, wherever its bodies are.
+    /// An undeformed bushing, whatever the positions of its bodies.
     pub(crate) fn unmoved(
         part: BondedPart<'p>,
         simulation: &Simulation,
@@ -314,7 +316,7 @@ impl<'p> BondedBushing<'p> {
         })
     }
 
-    /// Loads of the rubber at rest, as if they had lasted.
+    /// Loads of the rubber at rest, for all past steps.
     fn first_loads(&mut self) {
         let forces = self.forces();
         for now in &mut self.sleeves {
@@ -325,7 +327,7 @@ impl<'p> BondedBushing<'p> {
         }
     }
 
-    /// Of the elements on the nodes as last evaluated, N.
+    /// Forces of the elements on the nodes as last evaluated, N.
     fn forces(&self) -> Vec<Vec3> {
         match &self.rubber {
             BondedRubber::Explicit(solid) => {
@@ -335,7 +337,7 @@ impl<'p> BondedBushing<'p> {
         }
     }
 
-    /// In windows of so many s, before the first one.
+    /// Sets the steps for a coupling step of this length (s), before the first one.
     pub(crate) fn step_in(&mut self, window: f64) {
         let of = |most: f64| ((window / most * (1.0 - 1e-12)).ceil() as usize).max(1);
         self.steps = self.most.map_or(1, of);
@@ -353,8 +355,8 @@ impl<'p> BondedBushing<'p> {
         }
     }
 
-    /// Through a window whose beginning its sleeves have been told, in which their bodies go on as in the one before. Explicit steps end
-    /// half a step ahead of the bodies, implicit ones half a step behind.
+    /// Takes the steps of a coupling step, with the bodies extrapolated. Explicit steps end half a step after the time
+    /// of the bodies, implicit ones half a step before it.
     pub(crate) fn through_window(&mut self) -> Result<(), RubberError> {
         for k in 0..self.steps {
             let after = (k as f64 + 0.5) * self.step;
@@ -400,7 +402,7 @@ impl<'p> BondedBushing<'p> {
         Ok(())
     }
 
-    /// About how many evaluations of a steel element a window is worth.
+    /// Cost of a coupling step in evaluations of a steel element, roughly.
     pub fn effort(&self) -> u64 {
         let (elements, worth) = match &self.rubber {
             BondedRubber::Explicit(solid) => (solid.model.problem.elements.len(), 4),
@@ -410,7 +412,7 @@ impl<'p> BondedBushing<'p> {
         (elements * worth * self.steps) as u64
     }
 
-    /// Steps of the rubber so far.
+    /// Number of steps of the rubber so far.
     pub fn steps_done(&self) -> u64 {
         match &self.rubber {
             BondedRubber::Explicit(solid) => solid.steps,
@@ -418,7 +420,7 @@ impl<'p> BondedBushing<'p> {
         }
     }
 
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub fn ran(&self) -> Counts {
         match &self.rubber {
             BondedRubber::Explicit(solid) => solid.ran,
@@ -433,7 +435,7 @@ impl<'p> BondedBushing<'p> {
         }
     }
 
-    /// Of all nodes, m; half a step off the bodies' time.
+    /// Displacement of all nodes, m, half a step from the time of the bodies.
     pub fn displacement(&self) -> Vec<Vec3> {
         match &self.rubber {
             BondedRubber::Explicit(solid) => {
@@ -454,7 +456,7 @@ impl<'p> BondedBushing<'p> {
                 BondedSnapshot { dissipated, beyond, ..held }
             }
             BondedRubber::Implicit(solid) => {
-                // It is a state that was found; one that is none makes the ledger end the run.
+                // The state was found before; an invalid one makes the ledger end the run.
                 let ledger = RubberLedger::of(solid.model(), solid.state());
                 let unknown = RubberLedger { network: f64::NAN, ..RubberLedger::default() };
                 let found = ledger.unwrap_or(unknown);
@@ -474,7 +476,7 @@ impl<'p> BondedBushing<'p> {
     }
 }
 
-/// Largest stiffness against a shift (N/m) and a turn (N·m/rad) before anything has relaxed.
+/// Largest stiffness against a displacement (N/m) and a rotation (N·m/rad) before any relaxation.
 fn sudden_stiffness(spring: &Connection) -> [f64; 2] {
     let law = match &spring.law {
         Law::SpringDashpot(law) => law,
@@ -486,7 +488,7 @@ fn sudden_stiffness(spring: &Connection) -> [f64; 2] {
     [0..3, 3..6].map(|axes| axes.map(of).fold(0.0, f64::max))
 }
 
-/// Gives the bodies of sleeves the mass of the nodes that they carry (kg, one for each node).
+/// Adds the mass of the sleeve nodes (kg, one for each node) to the bodies of the sleeves.
 pub fn add_mass(assembly: &mut Assembly, sleeve: &Sleeve, mass: &[f64]) {
     let body = &mut assembly.bodies[sleeve.body];
     let Some(race) = body.driven_mut() else { return };

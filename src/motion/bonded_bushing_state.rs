@@ -1,4 +1,4 @@
-//! What a bushing bonded between bodies goes on from with the same bits, as one list of numbers.
+//! State of a bushing bonded between bodies as one list of numbers, from which it continues with the same bits.
 
 use crate::elements::tet10::POINTS;
 use crate::kinematics::vec3::Vec3;
@@ -11,13 +11,13 @@ use crate::solids::rubber::checkpoint::{Factored, RubberCheckpoint, RubberState}
 use crate::solids::rubber::steps::StepCounts;
 use crate::solids::tet4_blocks::{LANES, Node};
 
-/// Of [`BondedBushing::numbers`] what stands before the nodes.
+/// Number of entries of [`BondedBushing::numbers`] before the nodes.
 const OF_IMPLICIT: usize = 13;
 const OF_EXPLICIT: usize = 4;
 const OF_SLEEVE: usize = 19;
 
 impl BondedPart<'_> {
-    /// Whether so many numbers may be those of this bushing under way ([`BondedBushing::numbers`]).
+    /// Returns whether this may be the length of this bushing's state ([`BondedBushing::numbers`]).
     pub fn may_have(&self, count: usize) -> bool {
         let sleeves = 1 + OF_SLEEVE * self.sleeves.len();
         match &self.elements {
@@ -41,7 +41,7 @@ impl BondedPart<'_> {
 }
 
 impl BondedBushing<'_> {
-    /// Everything that its steps to come follow from.
+    /// All numbers on which its further steps depend.
     pub fn numbers(&self) -> Vec<f64> {
         let mut all = vec![self.most.unwrap_or(0.0)];
         self.sleeves.iter().for_each(|now| all.extend(of_sleeve(now)));
@@ -82,8 +82,8 @@ impl BondedBushing<'_> {
         all
     }
 
-    /// Goes on in windows of so many s from what [`BondedBushing::numbers`] left of the same bushing; `None` if it is
-    /// of another one.
+    /// Continues in coupling steps of this length (s) from [`BondedBushing::numbers`] of the same bushing; `None` if
+    /// they are of another one.
     #[must_use]
     pub fn restore(&mut self, window: f64, numbers: &[f64]) -> Option<()> {
         let mut rest = numbers;

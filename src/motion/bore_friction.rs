@@ -1,5 +1,5 @@
-//! Friction of a race in the bore of a solid in explicit steps: a spring for each node that touches, which changes
-//! once in every step of the solid.
+//! Friction of a race in the bore of a solid in explicit steps: one spring for each contact node, updated once in every
+//! step of the solid.
 
 use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, Frame, Touch};
 use crate::ch4_rotor::bore_friction::{BoreFriction, FrictionUpdate, Spring};
@@ -8,26 +8,26 @@ pub use crate::solids::contact::Pressed;
 use crate::solids::contact::press_and;
 use crate::solids::tet4_blocks::Node;
 
-/// What friction does at one time, and has done until then.
+/// Friction forces at one time, and energies until then.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionSum {
-    /// On the race, N.
+    /// Force on the race, N.
     pub force: Vec3,
-    /// On the race about its centre, N·m.
+    /// Moment on the race about its centre, N·m.
     pub moment: Vec3,
-    /// Nodes that slip.
+    /// Number of slipping nodes.
     pub slipping: usize,
-    /// In the springs, J.
+    /// Stored in the springs, J.
     pub stored: f64,
-    /// Of slipping, since the start, J.
+    /// Heat of slip since the start, J.
     pub heat: f64,
-    /// What changes of the normal load have stored in the springs since the start, J; see
+    /// Energy stored in the springs by changes of the normal load since the start, J; see
     /// [`FrictionUpdate::load_work`].
     pub load_work: f64,
 }
 
 impl FrictionSum {
-    /// What the surfaces have done to each other since the start, J: it has gone from bodies and solids.
+    /// Energy taken from bodies and solids since the start, J.
     pub fn taken(&self) -> f64 {
         self.stored + self.heat - self.load_work
     }
@@ -36,29 +36,29 @@ impl FrictionSum {
 /// A node's number and its spring.
 pub type NodeSpring = (u32, Spring);
 
-/// The friction of a seat at the present time.
+/// Friction of a housing fit at the present time.
 #[derive(Clone, Debug)]
 pub struct SeatFriction {
     pub law: BoreFriction,
-    /// Of the nodes that touched in the last step, ascending.
+    /// Springs of the nodes in contact in the last step, ascending.
     pub springs: Vec<NodeSpring>,
-    /// As of the last step.
+    /// Sums of the last step.
     pub sum: FrictionSum,
-    /// Of springs, in all steps.
+    /// Number of spring updates in all steps.
     pub pulls: u64,
-    /// Of the step that is being taken.
+    /// Springs of the present step.
     next: Vec<NodeSpring>,
 }
 
 impl SeatFriction {
-    /// Of a seat with so many nodes.
+    /// Friction of a housing fit with this number of nodes.
     pub fn new(law: BoreFriction, nodes: usize) -> SeatFriction {
         let [springs, next] = [(), ()].map(|()| Vec::with_capacity(nodes));
         SeatFriction { law, springs, sum: FrictionSum::default(), pulls: 0, next }
     }
 
-    /// Contact and friction in a step of the solid, after which the springs are those of this step; adds both to the
-    /// nodes' forces (N).
+    /// Contact and friction in a step of the solid, with an update of the springs; adds both to the forces of the nodes
+    /// (N).
     pub fn push(&mut self, pressed: &Pressed, forces: &mut [Node]) -> ContactSum {
         let SeatFriction { law, springs, sum, pulls, next } = self;
         next.clear();
@@ -70,21 +70,21 @@ impl SeatFriction {
         contact
     }
 
-    /// The same without a step: nothing is kept.
+    /// The same without an update of the springs.
     pub fn check(&self, pressed: &Pressed, forces: &mut [Node]) -> (ContactSum, FrictionSum) {
         pull_all(&self.law, &self.springs, self.sum, pressed, forces, |_, _| {})
     }
 }
 
-/// The springs of nodes that touched, walked through as nodes that touch come by.
+/// Walk through the springs of the last step in step with the contact nodes.
 struct Walk<'s> {
     left: &'s [NodeSpring],
-    /// In springs of nodes that touch no longer, J.
+    /// Energy in springs of nodes that have lost contact, J.
     released: f64,
 }
 
 impl Walk<'_> {
-    /// The spring of a node; one without stiffness where it did not touch.
+    /// Spring of a node; without stiffness if it was not in contact.
     fn spring_of(&mut self, node: u32) -> Spring {
         while let [(other, spring), rest @ ..] = self.left
             && *other <= node
@@ -98,7 +98,7 @@ impl Walk<'_> {
         Spring::default()
     }
 
-    /// What is left in springs that no node came by for, J.
+    /// Energy left in the springs of nodes not visited, J.
     fn finish(self) -> f64 {
         self.left.iter().fold(self.released, |sum, (_, spring)| sum + spring.energy())
     }
@@ -131,14 +131,14 @@ fn pull_all(
         }
         sum.slipping += usize::from(slips);
         sum.stored += spring.energy();
-        // The node drags the race along.
+        // Force of the node on the race.
         let on_race = to_world(frame, spring.force());
         sum.force = add(sum.force, on_race);
         sum.moment = add(sum.moment, cross(touch.arm, on_race));
         Some(scale(on_race, -1.0))
     };
     let mut contact = press_and(pressed, forces, also);
-    // The load was eased to nothing.
+    // The load fell to zero.
     sum.load_work -= walk.finish();
     contact.force = add(contact.force, sum.force);
     contact.moment = add(contact.moment, sum.moment);

@@ -1,4 +1,4 @@
-//! Everything a simulation needs to go on with the same bits.
+//! Checkpoint of a simulation, from which it continues with the same bits.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::state::{Layout, Places};
@@ -27,12 +27,12 @@ pub struct Checkpoint {
     /// The ledger counts from its start.
     pub balance: Balance,
     pub work: Work,
-    /// With error control only.
+    /// `None` without error control.
     pub control: Option<Memory>,
 }
 
 impl Checkpoint {
-    /// Whether its lists have the lengths that the problem asks for.
+    /// Returns whether its lists have the lengths of the problem.
     pub fn fits(&self, assembly: &Assembly) -> bool {
         let layouts = Layout::of(assembly);
         self.state.len() == Places::of(assembly).state_len() && self.extremes.len() == layouts.len()
@@ -46,7 +46,7 @@ impl Simulation {
         checkpoint
     }
 
-    /// As [`Simulation::checkpoint`]; allocates nothing the second time.
+    /// See [`Simulation::checkpoint`]; allocates nothing the second time.
     pub fn checkpoint_into(&self, checkpoint: &mut Checkpoint) {
         checkpoint.time = self.time;
         checkpoint.steps = self.steps;
@@ -60,13 +60,14 @@ impl Simulation {
         checkpoint.control = self.control.as_ref().map(|control| control.memory);
     }
 
-    /// Goes on where a checkpoint was taken: the same problem and options give the same bits as
-    /// if nothing had come between.
+    /// Continues from a checkpoint: the same problem and options give the same bits as an unbroken run.
     ///
     /// # Errors
-    /// A step size that is no step.
+    ///
+    /// An invalid step size.
     ///
     /// # Panics
+    ///
     /// If the checkpoint does not [fit](Checkpoint::fits) the problem.
     pub fn from_checkpoint(
         assembly: impl Into<Assembly>,

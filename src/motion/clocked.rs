@@ -1,4 +1,4 @@
-//! A bearing's steps by the clock of its run.
+//! Steps of a bearing by the clock of its run.
 
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::lists::Assembly;
@@ -6,21 +6,21 @@ use crate::motion::simulation::{RunOptions, Simulation, SimulationError, Steppin
 use crate::motion::step_watch::LOOK_EVERY;
 use crate::numeric::clock::{Clock, whole_steps};
 
-/// What a run is asked for besides what moves in it.
+/// Settings of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunRequest {
-    /// How a bearing steps, and how much energy may go missing.
+    /// Step control and energy limit.
     pub options: RunOptions,
     /// s.
     pub end: f64,
-    /// Wanted time between rows, s.
+    /// Requested time between rows, s.
     pub output_interval: f64,
-    /// Wanted time between files of fields, s; `None`: none on the way.
+    /// Requested time between files of fields, s; `None`: only at the end.
     pub fields_interval: Option<f64>,
     pub channels: Vec<ChannelGroup>,
 }
 
-/// What a step has come to.
+/// Events at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     /// A row is due.
@@ -31,11 +31,12 @@ pub struct Arrival {
 
 /// A bearing at the start of its run, and the clock of the run.
 ///
-/// A step that follows from the stability limit is shortened so that a whole number of steps
-/// makes an output interval; with a given step the interval is rounded to whole steps.
+/// A step that follows from the stability limit is shortened so that a whole number of steps makes an output interval;
+/// with a prescribed step the interval is rounded to whole steps.
 ///
 /// # Errors
-/// No equilibrium to start from, no step or one that is too long.
+///
+/// No equilibrium at the start; an invalid step or one that is too long.
 pub fn start(
     assembly: impl Into<Assembly>,
     request: &RunRequest,
@@ -62,10 +63,11 @@ pub fn start(
     Ok((simulation, clock))
 }
 
-/// One step, up to what is due next.
+/// Takes one step, up to the next event.
 ///
 /// # Errors
-/// What the simulation's watchdog finds.
+///
+/// See [`Simulation::step`].
 pub fn step(simulation: &mut Simulation, clock: &Clock) -> Result<Arrival, SimulationError> {
     let stop = clock.next_stop(simulation.time, simulation.step_size);
     if let Some(corner) = stop.corner {
@@ -83,12 +85,12 @@ pub fn step(simulation: &mut Simulation, clock: &Clock) -> Result<Arrival, Simul
     Ok(Arrival { row: stop.row, completes: stop.completes })
 }
 
-/// SectionAttachments the step against what the contacts have become, every few steps; one that follows from the
-/// stability limit is shortened, unless the run is complete: that goes on, if at all, from before
-/// its last step.
+/// Compares the step with the stability limit of the contacts, every few steps. A step that follows from the limit is
+/// shortened, unless the run is complete: resuming continues from before its last step.
 ///
 /// # Errors
-/// A given step that has become too long.
+///
+/// A prescribed step that has become too long.
 pub fn watch(
     simulation: &mut Simulation,
     clock: &mut Clock,

@@ -1,5 +1,4 @@
-//! Everything that bodies and solids in explicit steps, with seats between them, need to go on with the
-//! same bits.
+//! Checkpoint of a coupled motion, from which it continues with the same bits.
 
 use crate::assembly::lists::Assembly;
 use crate::kinematics::vec3::Vec3;
@@ -15,32 +14,32 @@ use crate::solids::checkpoint::SolidCheckpoint;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid};
 use crate::solids::step_limit::SolidStepLimit;
 
-/// All at the end of a window, as plain numbers.
+/// State at the end of a coupling step, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExchangeCheckpoint {
     pub simulation: Checkpoint,
     pub solids: Vec<SteppedCheckpoint>,
-    /// Of each bushing [`BondedBushing::numbers`].
+    /// [`BondedBushing::numbers`] of each bushing.
     pub bushings: Vec<Vec<f64>>,
     pub exchanges: u64,
-    /// What the ledger of all held at the start, J.
+    /// Initial energy in the ledger, J.
     pub first: f64,
 }
 
-/// A solid and its seats.
+/// A solid and its housing fits.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteppedCheckpoint {
     pub solid: SolidCheckpoint,
     pub seats: Vec<SeatCheckpoint>,
-    /// Of a shaft what it keeps beside its elements; of other solids none.
+    /// Numbers of a shaft in addition to its elements; empty for other solids.
     pub shaft: Vec<f64>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeatCheckpoint {
-    /// On the race since the start, N·s.
+    /// Impulse on the race since the start, N·s.
     pub impulse: Vec3,
-    /// On its body since the start, J.
+    /// Work on its body since the start, J.
     pub work: f64,
     pub growth: Growth,
     pub tested: u64,
@@ -48,28 +47,27 @@ pub struct SeatCheckpoint {
     pub friction: Option<FrictionCheckpoint>,
 }
 
-/// What the friction of a seat remembers.
+/// History of the friction of a housing fit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionCheckpoint {
-    /// Of nodes that touched in the last step, ascending.
+    /// Nodes in contact in the last step, ascending.
     pub springs: Vec<NodeSpring>,
-    /// Since the start, J; see [`FrictionSum`](crate::motion::bore_friction::FrictionSum).
+    /// Friction heat since the start, J; see [`FrictionSum`](crate::motion::bore_friction::FrictionSum).
     pub heat: f64,
     pub load_work: f64,
 }
 
-/// Sizes that were chosen at the start and stay.
+/// Step sizes chosen at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Windows {
-    /// s.
+    /// Coupling step, s.
     pub window: f64,
-    /// Of each solid: steps in a window, and what limits them.
+    /// Of each solid: steps in a coupling step, and what limits them.
     pub solids: Vec<(usize, SolidStepLimit)>,
 }
 
 impl<'p> Exchange<'p> {
-    /// Where all are now. Nodes are sorted by reach first, so that going on from here and going on
-    /// from the checkpoint tests the same ones.
+    /// Writes the present state. Contact nodes are sorted first, so that both continuations test the same nodes.
     pub fn checkpoint_into(&mut self, checkpoint: &mut ExchangeCheckpoint) {
         self.simulation.checkpoint_into(&mut checkpoint.simulation);
         checkpoint.solids.resize_with(self.solids.len(), SteppedCheckpoint::default);
@@ -101,13 +99,15 @@ impl<'p> Exchange<'p> {
         Windows { window: self.window, solids: self.solids.iter().map(of).collect() }
     }
 
-    /// Goes on where a checkpoint of the same assembly, solids, seats, bushings and options was taken.
+    /// Continues from a checkpoint of the same assembly, solids, housing fits, bushings and options.
     ///
     /// # Errors
-    /// A step size that is no step.
+    ///
+    /// An invalid step size.
     ///
     /// # Panics
-    /// If the checkpoint has other numbers of balls, solids, nodes, seats or bushings.
+    ///
+    /// If the checkpoint has another number of balls, solids, nodes, housing fits or bushings.
     pub fn from_checkpoint(
         assembly: impl Into<Assembly>,
         solids: Vec<SolidPart>,

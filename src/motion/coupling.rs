@@ -1,12 +1,11 @@
-//! Rigid bodies with their bearings, and solids in explicit steps, in motion together, each in steps of its
-//! own; what they exchange is momentum.
+//! Coupled motion of rigid bodies and solids in explicit steps: each takes its own steps, and they exchange impulses
+//! once a coupling step.
 //!
-//! Central differences know a solid's velocities half a step before its displacements. The bodies' time
-//! is that of the velocities. From there on all go through a window of equal length: the races as if
-//! their bodies were free, while every solid takes its steps against them and the impulses of its seats
-//! are summed; then the bodies, under the means of these impulses. Whatever a solid gets the body gets
-//! too, with the other sign. Drift, kick, drift: of second order, and an elastic contact between the two
-//! neither makes nor loses energy in the long run. Within a window no solid knows of another.
+//! Central differences have a solid's velocities half a step before its displacements. The time of the bodies is that
+//! of the velocities. In a coupling step every solid first takes its steps against races that move as free bodies, and
+//! the impulses of its race-bore contacts are summed. Then the bodies take the step under the mean loads of these
+//! impulses. Body and solid get the same impulse with opposite signs. This is drift, kick, drift: second order, and
+//! elastic contact conserves energy in the long run. Solids do not see each other within a coupling step.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::{Counts, StageCounts};
@@ -27,15 +26,15 @@ use crate::solids::rubber::error::RubberError;
 use crate::solids::threads::WorkerPool;
 use thiserror::Error;
 
-/// A solid that takes part, as it starts.
+/// A solid in coupled motion, at its start.
 #[derive(Clone, Debug)]
 pub struct SolidPart {
-    /// As messages and columns name it; `None` for the only one.
+    /// Name in messages and columns; `None` for the only one.
     pub name: Option<String>,
     pub model: SolidModel,
-    /// m, one for each node.
+    /// Displacement of each node, m.
     pub displacement: Vec<Vec3>,
-    /// Where it is a shaft.
+    /// `None` if the solid is not a shaft.
     pub shaft: Option<ShaftPart>,
 }
 
@@ -45,7 +44,7 @@ impl SolidPart {
         SolidPart::displaced(name, model, displacement)
     }
 
-    /// `displacement` in m, one for each node.
+    /// `displacement` of each node, m.
     pub fn displaced(
         name: Option<String>,
         model: SolidModel,
@@ -55,18 +54,19 @@ impl SolidPart {
     }
 }
 
-/// How far to go in one step.
+/// Limits of the step sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExchangeOptions {
-    /// Steps of the solids, as a fraction of their stability limit with the contact closed.
+    /// Step of the solids as a fraction of their stability limit with the contact closed.
     pub solid_fraction: f64,
-    /// Windows, as ωH of a body on all of its seats; stable below 2. Bushings have phases of their own.
+    /// Phase ωH of a body on all of its housing fits in a coupling step; stable below 2. Bushings have phases of their
+    /// own.
     pub seat_phase: f64,
     pub bearing: RunOptions,
 }
 
 impl ExchangeOptions {
-    /// Of bushings and shafts without a housing beside them.
+    /// Options for bushings and shafts without a housing.
     pub fn without_housings(bearing: RunOptions) -> ExchangeOptions {
         ExchangeOptions { solid_fraction: 0.9, seat_phase: 1.0, bearing }
     }
@@ -97,16 +97,16 @@ pub enum ExchangeError {
     )]
     NoSeat { seat: String },
     #[error(
-        "windows between bodies and solids would be {window} s: a body has no mass or inertia against the springs that it sits on"
+        "the coupling step would be {window} s: a body has no mass or inertia against its springs"
     )]
     NoWindow { window: f64 },
     #[error(
-        "{race} has left its bore at t = {time} s, step {step}: it is {distance:.3e} m off \
-         {way}, where {allowed:.3e} m are left of its seat"
+        "{race} has left its bore at t = {time} s, step {step}: it is displaced by {distance:.3e} m \
+          {way}; {allowed:.3e} m are allowed"
     )]
     LeftBore { race: String, way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
     #[error(
-        "{race} and its bore have moved by {moved:.3e} m at t = {time} s since nodes farther than {reach:.3e} m from touching \
+        "{race} and its bore have moved by {moved:.3e} m at t = {time} s since nodes farther than {reach:.3e} m from contact \
          were left out, within {LOOK} windows: far more than what is in equilibrium there moves. Hint: does the race start in the wall of \
          its bore (fit, solid.mesh.origin)? Is a load, or its unit, far too large?"
     )]
@@ -117,41 +117,41 @@ fn of_solid(name: &Option<String>) -> String {
     name.as_ref().map_or(String::new(), |name| format!("solid {name}: "))
 }
 
-/// Windows between two looks at how far things have moved.
+/// Coupling steps between two checks of displacements.
 const LOOK: u64 = 16;
 
-/// An assembly of bodies and bearings with its races in the bores of solids, or on bushings of rubber.
+/// Bodies and bearings with races in the bores of solids, or on bushings of rubber.
 pub struct Exchange<'p> {
     pub simulation: Simulation,
-    /// The seats lie with their solids; that is the order of every sum over them.
+    /// In the order of the solids' housing fits, which is the order of every sum over them.
     pub solids: Vec<SteppedSolid>,
     pub bushings: Vec<BondedBushing<'p>>,
-    /// In which all are taken on, s.
+    /// Length of the coupling step, s.
     pub window: f64,
     pub exchanges: u64,
-    /// What the ledger of all held at the start, J.
+    /// Initial energy in the ledger, J.
     pub(crate) first: f64,
-    /// Whether one seat is all that pushes or brakes the bodies from outside.
+    /// True if one housing fit is the only external load on the bodies.
     is_alone: bool,
-    /// Of the present window, for each body in a seat.
+    /// Loads in the present coupling step, for each body in a bore.
     loads: Vec<(usize, Wrench)>,
     crew: WorkerPool,
 }
 
-/// Everything at the present time.
+/// Energies and loads at the present time.
 #[derive(Clone, Debug)]
 pub struct ExchangeSnapshot {
     pub simulation: Snapshot,
     pub solids: Vec<SolidSnapshot>,
     pub bushings: Vec<BondedSnapshot>,
-    /// Energy unaccounted for in all together, J.
+    /// Energy residual, J.
     pub residual: f64,
-    /// Energy held in all and all work and losses, J: what the residual is a part of.
+    /// Sum of stored energy, work and losses, J; reference of the residual.
     pub turned_over: f64,
 }
 
 impl<'p> Exchange<'p> {
-    /// Before its first window.
+    /// The state before the first coupling step.
     pub(crate) fn of(
         simulation: Simulation,
         solids: Vec<SteppedSolid>,
@@ -171,8 +171,8 @@ impl<'p> Exchange<'p> {
         }
     }
 
-    /// From now on steps its solids on so many threads, with the same bits: each solid in as many parts as
-    /// its share of all elements that are evaluated comes to.
+    /// Runs the solids on this number of threads, with the same bits. Each solid gets a share of the threads
+    /// proportional to its elements.
     pub fn share(&mut self, threads: usize) {
         self.crew = WorkerPool::new(threads);
         let cost = |part: &SteppedSolid| part.solid.model.problem.elements.len() * part.steps;
@@ -187,7 +187,7 @@ impl<'p> Exchange<'p> {
         self.crew.threads()
     }
 
-    /// Steps of the windows as they are now; contact and balance count from the present state.
+    /// Starts counts, contact and energy balance from the present state.
     pub(crate) fn begin(&mut self) -> Result<(), ExchangeError> {
         for part in &mut self.solids {
             part.step_in(self.window);
@@ -203,16 +203,17 @@ impl<'p> Exchange<'p> {
         Ok(())
     }
 
-    /// Shortens windows and steps so that a whole number of windows makes `interval` (s), before the
-    /// first exchange; returns how many.
+    /// Shortens coupling steps and steps so that a whole number of coupling steps makes `interval` (s), before the
+    /// first step. Returns that number.
     ///
     /// # Errors
-    /// As [`Exchange::snapshot`].
+    ///
+    /// See [`Exchange::snapshot`].
     pub fn divide(&mut self, interval: f64) -> Result<u64, ExchangeError> {
-        // A ratio that is whole but for rounding is whole.
+        // Rounding must not add a coupling step.
         let windows = (interval / self.window * (1.0 - 1e-12)).ceil().max(1.0);
         self.window = interval / windows;
-        // No step of the bodies is longer than its window, whatever it might be by itself.
+        // The step of the bodies is at most a coupling step.
         if self.simulation.control.is_none() {
             self.simulation.step_size = self.simulation.step_size.min(self.window);
         }
@@ -220,12 +221,12 @@ impl<'p> Exchange<'p> {
         Ok(windows as u64)
     }
 
-    /// Present time: that of the bodies and of the solids' velocities, s.
+    /// Present time, s: that of the bodies and of the solids' velocities.
     pub fn time(&self) -> f64 {
         self.simulation.time
     }
 
-    /// How often each stage has run in all.
+    /// Number of runs of each stage.
     pub fn ran(&self) -> StageCounts {
         let mut ran = self.simulation.system.ran.clone();
         ran.solids = self.solids.iter().map(SteppedSolid::ran).collect();
@@ -238,7 +239,7 @@ impl<'p> Exchange<'p> {
         ran
     }
 
-    /// Counts anew.
+    /// Resets the counts.
     pub fn forget_ran(&mut self) {
         self.simulation.system.ran.clear();
         for part in &mut self.solids {
@@ -251,10 +252,11 @@ impl<'p> Exchange<'p> {
         self.solids.iter().flat_map(|part| &part.seats)
     }
 
-    /// Takes all through one window.
+    /// Takes one coupling step.
     ///
     /// # Errors
-    /// What ends one of them, or a race that has left its bore.
+    ///
+    /// The error of a body or solid; a race outside its bore.
     pub fn advance(&mut self) -> Result<(), ExchangeError> {
         if self.exchanges.is_multiple_of(LOOK) {
             self.check()?;
@@ -290,7 +292,7 @@ impl<'p> Exchange<'p> {
         Ok(())
     }
 
-    /// Whether the races are still in their bores, and nodes out of reach still are.
+    /// Checks that races are in their bores and that untested nodes are out of contact.
     fn check(&mut self) -> Result<(), ExchangeError> {
         let (time, step) = (self.simulation.time, self.exchanges);
         for part in &mut self.solids {
@@ -311,7 +313,7 @@ impl<'p> Exchange<'p> {
         Ok(())
     }
 
-    /// The bodies get what their seats have summed up in the window.
+    /// Applies the impulses of the coupling step to the bodies.
     fn hand_over(&mut self) {
         self.loads.clear();
         let (loads, window) = (&mut self.loads, self.window);
@@ -333,9 +335,9 @@ impl<'p> Exchange<'p> {
         self.simulation.set_outside_loads(&self.loads);
     }
 
-    /// Work of the seats on their bodies in the window behind.
+    /// Books the work of the housing fits on their bodies in the last coupling step.
     fn book(&mut self) {
-        // The bodies' own ledger has it integrated with their motion, where nothing else goes into that entry.
+        // The ledger of the bodies integrates this work if nothing else goes into that entry.
         let integrated = self.is_alone.then(|| {
             self.simulation.state[self.simulation.system.places.ledger_entry(Ledger::Foundation)]
         });
@@ -354,7 +356,7 @@ impl<'p> Exchange<'p> {
         }
     }
 
-    /// Nodes of a solid that touch now, how stiff their contact is, and the force on each, N.
+    /// Contact nodes of a solid with their stiffness and force, N.
     pub fn nodal_forces(&self, solid: usize) -> Vec<(ContactNode, Penalty, Vec3)> {
         let part = &self.solids[solid];
         let mut found = Vec::new();
@@ -366,18 +368,19 @@ impl<'p> Exchange<'p> {
         found
     }
 
-    /// Loads, energies and what is unaccounted for.
+    /// Loads, energies and energy residual.
     ///
     /// # Errors
-    /// More energy unaccounted for in the bodies than their options allow.
+    ///
+    /// An energy residual of the bodies beyond the limit in their options.
     pub fn snapshot(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
         let mut snapshot = self.balance()?;
         snapshot.residual -= self.first;
         Ok(snapshot)
     }
 
-    /// The bodies are balanced where their time is, solids and contacts half a step later: what the
-    /// contacts do to the bodies in between is added.
+    /// Energies. Bodies are balanced at their time, solids and contacts half a step later: the work of the contacts on
+    /// the bodies in between is added.
     fn balance(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
         let bodies = self.simulation.snapshot();
         let Exchange { simulation, solids, bushings, .. } = self;

@@ -1,4 +1,4 @@
-//! How an exchange starts: where bodies, solids and bushings are in equilibrium, and in what windows they go on.
+//! Start of a coupled motion: equilibrium of bodies, solids and bushings, and the length of the coupling step.
 
 use crate::assembly::lists::{Assembly, Body};
 use crate::assembly::plan::Stage;
@@ -19,14 +19,16 @@ use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, padded};
 use crate::solids::step_limit::step_limit;
 
 impl<'p> Exchange<'p> {
-    /// Starts with the bodies that sit in solids where they rest, the others in equilibrium with them there
-    /// and the bearings rolling, the solids still and displaced as they are given.
+    /// Starts in equilibrium. Bodies in solids start at their prescribed position, all others in equilibrium with them,
+    /// bearings roll, and solids are at rest with the given displacement.
     ///
     /// # Errors
-    /// No equilibrium, a fixed race or one on a foundation, options out of range.
+    ///
+    /// No equilibrium; a race that is fixed or on a foundation; options out of range.
     ///
     /// # Panics
-    /// If a seat names a body or a solid that is not there.
+    ///
+    /// If a housing fit names a body or solid that does not exist.
     pub fn new(
         assembly: impl Into<Assembly>,
         solids: Vec<SolidPart>,
@@ -36,14 +38,16 @@ impl<'p> Exchange<'p> {
         Exchange::with_bushings(assembly, solids, seats, Vec::new(), options)
     }
 
-    /// The same with bushings between bodies: where these and the rest are in equilibrium on springs as stiff as the
-    /// relaxed rubber in its elements.
+    /// As [`Exchange::new`], with bushings between bodies. The equilibrium is that of springs with the relaxed
+    /// stiffness of the rubber elements.
     ///
     /// # Errors
-    /// As [`Exchange::new`]; rubber without an equilibrium.
+    ///
+    /// Those of [`Exchange::new`]; rubber without an equilibrium.
     ///
     /// # Panics
-    /// If a seat or a bushing names a body or a solid that is not there.
+    ///
+    /// If a housing fit or bushing names a body or solid that does not exist.
     pub fn with_bushings(
         assembly: impl Into<Assembly>,
         solids: Vec<SolidPart>,
@@ -97,7 +101,7 @@ impl<'p> Exchange<'p> {
         let steps: Vec<f64> = solids
             .iter()
             .map(|SteppedSolid { solid, seats, shaft, .. }| {
-                // With every node of every seat closed.
+                // With all nodes of all housing fits in contact.
                 let closed = seats.iter().fold(solid.limit, |limit, seat| {
                     closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
                 });
@@ -109,7 +113,7 @@ impl<'p> Exchange<'p> {
             .collect();
         let elements: Vec<usize> =
             solids.iter().map(|part| part.solid.model.problem.elements.len()).collect();
-        // The bodies' own steps divide the windows or are divided by them.
+        // The steps of the bodies divide the coupling step or are divided by it.
         let (window, steps) = divided(&elements, &steps, longest);
         for (part, steps) in solids.iter_mut().zip(steps) {
             part.steps = steps;
@@ -121,7 +125,7 @@ impl<'p> Exchange<'p> {
     }
 }
 
-/// Whether one seat is all that pushes or brakes the bodies of an assembly from outside.
+/// Returns whether one housing fit is the only external load on the bodies.
 pub(crate) fn is_alone(
     assembly: &Assembly,
     solids: &[SteppedSolid],
@@ -137,8 +141,7 @@ pub(crate) fn is_alone(
         && brakes.all(|damping| damping == 0.0)
 }
 
-/// State of an assembly in equilibrium whose bodies in and on solids are held where they rest, those on bushings on the
-/// springs that these are like.
+/// Equilibrium with bodies in and on solids fixed at their start, and bushings replaced by springs.
 fn held_start(
     assembly: &Assembly,
     in_solids: &[usize],
@@ -150,13 +153,13 @@ fn held_start(
         held.bodies[*body].hold();
     }
     let mut state = start::at_equilibrium(&held)?;
-    // What the springs' elements have in the state stands after that of the other connections, before shafts that bend.
+    // The ledger entries of the springs follow those of the other connections and precede flexible shafts.
     let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
     let bent: usize = assembly.shafts.iter().map(ElasticShaft::entries).sum();
     state.drain(own - bent..with_springs - bent);
     for &body in in_solids {
         if held.bodies[body].driven().is_some() {
-            // It turns, and balls roll with it.
+            // The body rotates, and its balls roll.
             continue;
         }
         let still: BodyState = rigid_body::fixed(&assembly.bodies[body].rest).state;

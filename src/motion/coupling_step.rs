@@ -1,4 +1,4 @@
-//! How long the windows of an exchange are, and what cannot be exchanged.
+//! Length of the coupling step, and what cannot be coupled.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::loads::Rotation;
@@ -8,11 +8,12 @@ use crate::motion::explicit_shaft::BRAKED;
 use crate::motion::explicit_solid::SteppedSolid;
 use crate::motion::race_in_bore::Seat;
 
-/// How far a body may swing on a section of a shaft in a window, rad: its own motion there is fast and of no interest.
+/// Phase of a body on a shaft section in a coupling step, rad. Its motion relative to the section is fast and not of
+/// interest.
 const JOINT_PHASE: f64 = 0.5;
 
-/// The longest window for which no body goes further on its seats than `phase`, and on its bushings and shafts than their own, s:
-/// of all together, stiffnesses over squares of phases count.
+/// Longest coupling step, s, within the phase limits of each body on its housing fits, bushings and shafts. Stiffnesses
+/// over squared phases add up.
 pub(crate) fn longest_window(
     assembly: &Assembly,
     seats: &[Seat],
@@ -52,25 +53,25 @@ pub(crate) fn longest_window(
             braked = [braked[0] + now.joint.damping()[0], braked[1] + now.joint.damping()[1]];
         }
         let Some(inertia) = body.inertia() else { continue };
-        // As if a spring asked for the same window.
+        // Damping is treated as a spring that requires the same coupling step.
         for (rate, of) in braked.into_iter().zip([inertia.mass, inertia.transverse]) {
             let rate = phase * rate / (BRAKED * of);
             most = most.max(rate * rate);
         }
         most = most.max((sums[0] / inertia.mass).max(sums[1] / inertia.transverse));
-        // Nothing but friction turns a race in its bore back; one whose speed is given does not mind.
+        // Only friction turns a race in its bore back; a race with prescribed speed is not affected.
         if body.driven().is_none_or(|race| matches!(race.rotation, Rotation::Torque(_))) {
             most = most.max(about_axis / inertia.axial);
         }
     }
     let window = phase / most.sqrt();
-    // No mass on a spring, or no number.
+    // A massless body, or NaN.
     if window > 0.0 { Ok(window) } else { Err(ExchangeError::NoWindow { window }) }
 }
 
-/// How many steps of at most `step` s (one a solid) fill a window, whole steps of one of them and no
-/// longer than `longest` (s); and its length, s. Of the windows that offer themselves the one that
-/// evaluates the fewest elements a second, the longer one of two.
+/// Number of steps of each solid in a coupling step, and its length, s. The coupling step is a whole number of steps of
+/// one solid, each at most its `step` (s), and at most `longest` (s). Of all candidates the one with the fewest element
+/// evaluations per second is taken; of two equal ones the longer.
 pub(crate) fn divided(elements: &[usize], step: &[f64], longest: f64) -> (f64, Vec<usize>) {
     let mut best: Option<(f64, f64, Vec<usize>)> = None;
     for whole in step {
@@ -92,7 +93,8 @@ pub(crate) fn divided(elements: &[usize], step: &[f64], longest: f64) -> (f64, V
 }
 
 /// # Errors
-/// Options out of range, a race that is fixed or on a foundation.
+///
+/// Options out of range; a race that is fixed or on a foundation.
 pub(crate) fn check(
     assembly: &Assembly,
     seats: &[Seat],
@@ -100,7 +102,7 @@ pub(crate) fn check(
 ) -> Result<(), ExchangeError> {
     let ranges = [
         ("the fraction of the solid's step limit", options.solid_fraction, 1.0),
-        ("the phase of the seat in a window", options.seat_phase, 1.9),
+        ("the phase of a housing fit in a coupling step", options.seat_phase, 1.9),
     ];
     for (name, value, most) in ranges {
         if !(value > 0.0 && value <= most) {

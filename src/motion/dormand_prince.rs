@@ -30,7 +30,7 @@ pub const DIFFERENCE: [f64; STAGES] = [
 /// Order of the error estimate in the step.
 pub const ERROR_ORDER: f64 = 5.0;
 
-/// Room for the stages; allocated once.
+/// Working memory of the stages; allocated once.
 pub struct DormandPrince {
     rates: [Vec<f64>; STAGES],
     stage: Vec<f64>,
@@ -42,7 +42,7 @@ impl DormandPrince {
         DormandPrince { rates: std::array::from_fn(|_| room()), stage: room() }
     }
 
-    /// Takes `rates` at the state from which the next step is to go.
+    /// Sets the rates at the beginning of the next step.
     pub fn begin(&mut self, rates: &[f64]) {
         self.rates[0].copy_from_slice(rates);
     }
@@ -52,8 +52,8 @@ impl DormandPrince {
         self.rates.swap(0, STAGES - 1);
     }
 
-    /// One step from where it began; `state` stays. The new state has its prescribed parts and unit
-    /// quaternions already, so that the last stage is the first of the next step to the bit.
+    /// Attempts one step; `state` does not change. The new state has its prescribed parts and unit quaternions, so that
+    /// the last stage is the first of the next step to the bit.
     pub fn attempt(
         &mut self,
         system: &mut System,

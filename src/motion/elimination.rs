@@ -1,7 +1,7 @@
 //! Elimination without pivots, LDLᵀ of symmetric positive definite matrices: 6 × 6 for a block of
 //! balls at a time, and one small dense matrix.
 //!
-//! The upper triangle goes in; factors leave it unscaled, with reciprocal pivots on the diagonal.
+//! The upper triangle goes in; factors are stored unscaled, with reciprocal pivots on the diagonal.
 
 use crate::assembly::state::LANES;
 use crate::motion::linearised::Lane;
@@ -94,7 +94,7 @@ impl LdltMatrix {
         LdltMatrix { size, values: vec![0.0; size * size] }
     }
 
-    /// Of another size, all zero.
+    /// Sets the size, all entries zero.
     pub fn resize(&mut self, size: usize) {
         self.size = size;
         self.values.clear();
@@ -160,7 +160,7 @@ impl LdltMatrix {
         }
     }
 
-    /// [`LdltMatrix::solve`] of six right-hand sides side by side.
+    /// [`LdltMatrix::solve`] for six right-hand sides.
     pub fn solve_six(&self, right: &mut [[f64; 6]]) {
         let n = self.size;
         let row = |k: usize| &self.values[k * n..(k + 1) * n];

@@ -1,4 +1,4 @@
-//! What is stored in a state: kinetic energy, contacts, gravity, springs, reduced solids and their seats.
+//! Energies of a state: kinetic, contacts, gravity, springs, reduced solids and their housing fits.
 
 use crate::assembly::state::{POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::cage::cage_energy;
@@ -25,10 +25,10 @@ pub struct Energy {
     /// Motion and strain of reduced solids.
     pub solid_kinetic: f64,
     pub solid_strain: f64,
-    /// Of bending of shafts.
+    /// Bending of shafts.
     pub bending_kinetic: f64,
     pub bending_strain: f64,
-    /// Stored in contacts of seats.
+    /// Stored in race–bore contacts.
     pub seat: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The energy ledger of bearings in motion: what was there at the start, what has come and gone, and whether it adds up.
+//! Energy ledger of bearings in motion: initial energy, work, losses, and the residual.
 
 use crate::assembly::ledger_watch::{LedgerWatch, MOST_OPEN};
 use crate::assembly::state::LEDGER;
@@ -6,43 +6,43 @@ use crate::motion::energy::Energy;
 use crate::motion::simulation::{Integrator, RunOptions, SimulationError, Stepping};
 use crate::motion::system::System;
 
-/// Steps of Runge–Kutta, a fraction of the shortest period each, from one look at the ledger to the next. The others are
-/// looked at after each of their steps.
+/// Steps of Runge–Kutta, each a fraction of the shortest period, between two checks of the ledger. Other integrators
+/// are checked after each step.
 const LOOK_EVERY: u64 = 16;
 
-/// Energy since the start, whatever rows are written.
+/// Energy balance since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {
     pub first: Energy,
-    /// What the ledger already held then, J.
+    /// Entries of the ledger at the start, J.
     pub before: f64,
-    /// At any look, J.
+    /// Largest contact energy at any check, J.
     pub largest_contact: f64,
     pub turnover: ContactTurnover,
     pub watch: LedgerWatch,
 }
 
-/// Energy that went into contacts and out again, as far as looks have seen it, J.
+/// Energy exchanged with the contacts, as seen at the checks, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactTurnover {
     pub sum: f64,
-    /// At the last look.
+    /// Contact energy at the last check.
     pub last: f64,
 }
 
-/// Everything that outputs are made of, at the present time.
+/// Energies and loads at the present time.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot {
     pub time: f64,
     pub energy: Energy,
     /// Work and losses since the start, J, in the order of [`crate::assembly::state::Ledger`].
     pub ledger: [f64; LEDGER],
-    /// Energy unaccounted for, J.
+    /// Energy residual, J.
     pub residual: f64,
 }
 
 impl Balance {
-    /// From a state that has been evaluated.
+    /// Balance from an evaluated state on.
     pub(crate) fn from_here(system: &System, state: &[f64]) -> Balance {
         let first = system.energy(state);
         let contact = first.contact + first.ball_contact;
@@ -55,7 +55,7 @@ impl Balance {
         }
     }
 
-    /// Of a state that has been evaluated.
+    /// Snapshot of an evaluated state.
     pub(crate) fn snapshot(&self, system: &System, state: &[f64], time: f64) -> Snapshot {
         let (energy, ledger) = (system.energy(state), entries(system, state));
         let work = ledger.iter().sum::<f64>() - self.before;
@@ -63,10 +63,11 @@ impl Balance {
         Snapshot { time, energy, ledger, residual }
     }
 
-    /// Looks at a state that has been evaluated in the step after so many others.
+    /// Checks an evaluated state after a number of steps.
     ///
     /// # Errors
-    /// More energy unaccounted for than the options allow, for too long.
+    ///
+    /// An energy residual beyond the limit in the options for too long.
     pub(crate) fn check(
         &mut self,
         (system, state): (&System, &[f64]),
@@ -81,7 +82,7 @@ impl Balance {
         }
         let now = self.snapshot(system, state, time);
         let turned_over = self.turned_over(&now, options);
-        // Bodies that nothing has touched have what rounding leaves.
+        // Bodies that have touched nothing have rounding errors only.
         if turned_over == 0.0 || self.watch.record(now.residual, turned_over, options.energy_limit)
         {
             return Ok(());
@@ -96,9 +97,8 @@ impl Balance {
         self.turnover.sum += (contact - self.turnover.last).abs();
         self.turnover.last = contact;
         let exchanged: f64 = now.ledger.iter().map(|entry| entry.abs()).sum();
-        // Error control keeps the motion, and with it a part of the energy of all motion and of all that
-        // passes through the contacts; steps that are too long for the contacts it does not take.
-        // Without it contacts are the first to go.
+        // Error control bounds the motion, and with it the relative energy of motion and of exchange with the contacts.
+        // Without it contacts fail first.
         let of_motion = match options.stepping {
             Stepping::Accuracy(_) => now.energy.kinetic + self.turnover.sum,
             Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => 0.0,
@@ -106,10 +106,11 @@ impl Balance {
         self.largest_contact + exchanged + of_motion
     }
 
-    /// Of a run that ends before so many looks that one too many could have been open: its last state alone.
+    /// Checks the last state of a run with too few checks to detect a lasting residual.
     ///
     /// # Errors
-    /// More energy unaccounted for than the options allow.
+    ///
+    /// An energy residual beyond the limit in the options.
     pub(crate) fn at_end(
         mut self,
         last: &Snapshot,

@@ -1,4 +1,4 @@
-//! What keeps a simulation from starting, or ends it.
+//! Errors at the start or in the course of a simulation.
 
 use crate::equilibrium::statics::StaticsError;
 use crate::members::dent_table::DentError;
@@ -21,7 +21,7 @@ pub enum SimulationError {
     )]
     NoErrorEstimate,
     #[error(
-        "errors are measured by overlaps of contacts, and there is no bearing; give a step in the place of an accuracy"
+        "errors are relative to overlaps of contacts, and there is no bearing; give a step instead of an accuracy"
     )]
     NothingToMeasure,
     #[error(
@@ -115,8 +115,8 @@ pub enum SimulationError {
         step: u64,
     },
     #[error(
-        "{spring} is {how}, up to which it is a spring, at t = {at} s, step {step}: what it joins has left its place (whirl that grows? \
-         loads and their units? a load that changes from the start on?), or turns round where the spring holds it (turn_x)",
+         "{spring} is {how}, the limit of its law, at t = {at} s, step {step}: are the joined bodies displaced (growing whirl? \
+          loads and their units? a load that changes from the start on?), or does the spring oppose a rotation (turn_x)?",
         at = display_time(*time)
     )]
     SpringBeyond { spring: String, how: String, time: f64, step: u64 },
@@ -126,8 +126,8 @@ pub enum SimulationError {
     )]
     ThroughWall { spring: String, across: f64, wall: f64, time: f64, step: u64 },
     #[error(
-        "{body} has left {seat} at t = {at} s, step {step}: it is {distance:.3e} m off {way}, where {allowed:.3e} m \
-         are left of its seat",
+         "{body} has left {seat} at t = {at} s, step {step}: it is displaced by {distance:.3e} m {way}; {allowed:.3e} m \
+          are allowed",
         at = display_time(*time)
     )]
     LeftSeat {
@@ -153,7 +153,7 @@ pub enum SimulationError {
     )]
     BentTooFar { body: String, along: f64, turn: f64, allowed: f64, time: f64, step: u64 },
     #[error(
-        "energy is lost or made: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
+         "the energy balance is violated: {residual:.3e} J of {turned_over:.3e} J are unaccounted for at \
          t = {at} s, step {step} (limit {limit}); take a smaller step or accuracy (numerics.step, \
          numerics.accuracy), or allow more (numerics.energy_limit)",
         at = display_time(*time)

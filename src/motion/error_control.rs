@@ -1,10 +1,8 @@
-//! Error control: how long a step may be so that the motion of the races comes out as accurately as
-//! was asked for.
+//! Error control: the step size for a requested accuracy of the races' motion.
 //!
-//! An error of a displacement counts against the largest overlap of a contact so far, that of a
-//! velocity against this displacement times the frequency of the body on its contacts. The largest
-//! of these quotients, over `accuracy` times [`SHARE`], is the norm that an accepted step keeps
-//! below one.
+//! The error of a displacement is relative to the largest overlap of a contact so far, that of a velocity to this
+//! displacement times the frequency of the body on its contacts. The largest of these quotients over `accuracy` times
+//! [`SHARE`] is the error norm, below one for an accepted step.
 
 use crate::assembly::lists::{Assembly, Bearing};
 use crate::assembly::state::{BODY, LANES, Layout, ORIENTATION, POSITION, Places, SPIN, VELOCITY};
@@ -12,7 +10,7 @@ use crate::ch2_housing::bearing::contact::normal_stiffness;
 use crate::members::flexible_shaft::{ElasticShaft, Section};
 use crate::motion::system::System;
 
-/// A step tried: where it leads, and its estimated error.
+/// An attempted step: the new state and its estimated error.
 #[derive(Clone, Debug, Default)]
 pub struct Attempt {
     pub state: Vec<f64>,
@@ -25,25 +23,25 @@ impl Attempt {
     }
 }
 
-/// Error of one step that is allowed, over the accuracy of the whole run: errors add up, and where
-/// bearings ring without damping for some hundred periods they add up to this.
+/// Allowed error of one step over the accuracy of the run: errors of a bearing that oscillates undamped for some
+/// hundred periods add up by this factor.
 pub const SHARE: f64 = 0.02;
-/// The scale of displacements is not below this part of a ball radius: some nanometres.
+/// Smallest scale of displacements, in ball radii: some nanometres.
 const FLOOR: f64 = 1e-6;
-/// Steps are kept this much shorter than the estimate asks for.
+/// Steps are shorter than the estimate by this factor.
 const SAFETY: f64 = 0.9;
 const LEAST_ERROR: f64 = 0.02;
 const SHORTEST: f64 = 0.2;
 const LONGEST: f64 = 2.5;
 
-/// What a run with error control remembers from step to step.
+/// Memory of the error control from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory {
     /// Scale of displacements: largest overlap so far, m.
     pub displacement: f64,
-    /// Norm of the error of the step before.
+    /// Error norm of the previous step.
     pub previous_error: f64,
-    /// Accepted steps, s; zero before the first.
+    /// Smallest accepted step, s; zero before the first.
     pub smallest: f64,
     pub largest: f64,
 }
@@ -57,29 +55,29 @@ pub struct Controller {
     stiffness: f64,
     /// Of each bearing.
     balls: Vec<(Layout, Scale)>,
-    /// First entry of each body that moves, with its scales.
+    /// First entry of each moving body, with its scales.
     bodies: Vec<(usize, Scale)>,
-    /// Shapes of reduced solids.
+    /// Modes of reduced solids.
     shapes: Vec<ShapeScale>,
-    /// First of six elongations of each Maxwell element, with what turns its angles into displacements, m.
+    /// First of six elongations of each Maxwell element, with the arm that turns its angles into displacements, m.
     elongations: Vec<(usize, f64)>,
 }
 
-/// What makes a shape of a reduced solid comparable.
+/// Scale of a mode of a reduced solid.
 #[derive(Clone, Copy, Debug)]
 struct ShapeScale {
-    /// Entries of how far it has gone, and how fast.
+    /// Entries of its displacement and of its velocity.
     at: [usize; 2],
-    /// Largest displacement of a seat for a unit of it.
+    /// Largest displacement of a bore surface for a unit of it.
     reach: f64,
     /// rad/s.
     frequency: f64,
-    /// Of the lightest race that sits in the solid.
+    /// Scale of the lightest race in the solid.
     race: Scale,
 }
 
-/// Scales of all shapes. Errors count by how far they move a seat; the speed of a shape that swings slower than
-/// the race on its balls by that of the race.
+/// Scales of all modes. Errors count as displacements of a bore surface; the velocity of a mode slower than the race on
+/// its balls counts with the frequency of the race.
 fn shapes(assembly: &Assembly, places: &Places) -> Vec<ShapeScale> {
     let mut all = Vec::new();
     for (index, (solid, at)) in assembly.solids.iter().zip(places.solids(assembly)).enumerate() {
@@ -111,7 +109,7 @@ fn shapes(assembly: &Assembly, places: &Places) -> Vec<ShapeScale> {
     all
 }
 
-/// Of a shaft that bends: by how far its shapes move what holds it.
+/// Modes of a flexible shaft, by the displacement of its attachments.
 fn of_shaft(
     assembly: &Assembly,
     shaft: &ElasticShaft,
@@ -136,7 +134,7 @@ fn of_shaft(
     })
 }
 
-/// Maxwell elements of all connections, with the longer arm of the two bodies that they join.
+/// Maxwell elements of all connections, with the longer arm of the two joined bodies.
 fn elongations(assembly: &Assembly, places: &Places) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for (connection, at) in assembly.connections.iter().zip(places.connections(assembly)) {
@@ -147,7 +145,7 @@ fn elongations(assembly: &Assembly, places: &Places) -> Vec<(usize, f64)> {
     all
 }
 
-/// What makes lengths and displacements of a body comparable.
+/// Scales of lengths and displacements of a body.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
     mass: f64,
@@ -155,7 +153,7 @@ struct Scale {
     arm: f64,
 }
 
-/// Pitch radius of the first bearing that a body belongs to.
+/// Pitch radius of the first bearing of a body.
 fn arm(assembly: &Assembly, body: usize) -> f64 {
     let belongs = |bearing: &&Bearing| {
         bearing.mounts.iter().any(|mount| mount.body == body)
@@ -197,7 +195,7 @@ impl Controller {
         }
     }
 
-    /// Takes note of the overlaps that `system` has evaluated last.
+    /// Records the overlaps that `system` has evaluated last.
     pub fn record(&mut self, system: &System) {
         for table in system.sets.iter().map(|set| &set.table) {
             for pair in &table.active {
@@ -207,29 +205,29 @@ impl Controller {
         }
     }
 
-    /// A first step far below every period.
+    /// First step, far below every period.
     pub fn first_step(&self) -> f64 {
         let frequency = self.balls.iter().map(|(_, ball)| self.frequency(ball));
         libm::cbrt(self.accuracy) / frequency.fold(0.0, f64::max)
     }
 
-    /// Of a body on one contact at the largest overlap, rad/s.
+    /// Frequency of a body on one contact at the largest overlap, rad/s.
     fn frequency(&self, scale: &Scale) -> f64 {
         (normal_stiffness(self.stiffness, self.memory.displacement) / scale.mass).sqrt()
     }
 
-    /// Norm of the error of an attempt; not above one is good enough.
+    /// Error norm of an attempt; accepted up to one.
     pub fn norm(&self, attempt: &Attempt) -> f64 {
         let error = &attempt.error;
         let largest = |at: usize, count: usize| {
             error[at..at + count].iter().fold(0.0f64, |largest, e| {
-                // NaN stays.
+                // NaN is kept.
                 if largest.is_nan() || e.abs() <= largest { largest } else { e.abs() }
             })
         };
         let mut norm = 0.0f64;
         let mut take = |value: f64| {
-            // NaN comes in and stays.
+            // NaN is kept.
             if value > norm || value.is_nan() {
                 norm = value;
             }
@@ -271,7 +269,7 @@ impl Controller {
         let memory = &mut self.memory;
         memory.largest = memory.largest.max(step);
         memory.smallest = if memory.smallest == 0.0 { step } else { memory.smallest.min(step) };
-        // A step cut short to end at a row has hardly an error, which says nothing of the next.
+        // The error of a step cut short by a row is too small to scale the next step.
         let norm = norm.max(LEAST_ERROR);
         let factor = SAFETY
             * libm::pow(norm, -0.7 / self.order)
@@ -281,10 +279,10 @@ impl Controller {
         step * factor.clamp(SHORTEST, most)
     }
 
-    /// Step to try after one was thrown away.
+    /// Step to try after a rejected one.
     pub fn shorter(&self, step: f64, norm: f64) -> f64 {
         let factor = SAFETY * libm::pow(norm, -1.0 / self.order);
-        // An error that is not a number says nothing but that the step was far too long.
+        // A NaN only shows that the step was far too long.
         if factor.is_finite() { step * factor.clamp(SHORTEST, SAFETY) } else { step * SHORTEST }
     }
 }

@@ -1,8 +1,8 @@
-//! What sits on a shaft of elements in explicit steps (4.2.3): races and discs as rigid bodies on springs between their centres and
-//! those of sections, and unbalances; between two exchanges with the bodies.
+//! Attachments of a shaft of elements in explicit steps (4.2.3): races and discs as rigid bodies on springs between
+//! their centres and those of sections, and unbalances; between two exchanges with the bodies.
 //!
-//! A spring sees its section where the nodes have it and its body as if free for a window, as a seat does; what it does to the
-//! section goes to the nodes, the impulse of it with the other sign to the body.
+//! A spring takes its section from the nodes and its body as free during a coupling step, as a housing fit does. Its
+//! force acts on the nodes, its impulse with the opposite sign on the body.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::state::BodyState;
@@ -19,10 +19,10 @@ use crate::solids::model::SolidModel;
 use crate::solids::tet4_blocks::Node;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// What makes a solid a shaft.
+/// Shaft properties of a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShaftPart {
-    /// About X, over time, rad/s: its nodes start with it, what sits on it is driven with it.
+    /// Rotation speed about X over time, rad/s: initial speed of the nodes, and drive of the attached bodies.
     pub speed: Profile,
     pub joints: Vec<Joint>,
     pub unbalances: Vec<SectionUnbalance>,
@@ -30,23 +30,23 @@ pub struct ShaftPart {
     pub watched: Vec<(String, RotorSection)>,
 }
 
-/// A rigid body that sits on a section, their centres and axes joined by springs.
+/// A rigid body on a section, joined to it by springs between centres and axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Index of the body.
     pub body: usize,
     pub section: RotorSection,
-    /// In the section's axes.
+    /// In the axes of the section.
     pub law: SpringDashpot,
 }
 
-/// A small mass beside the axis of a section.
+/// An unbalance of a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SectionUnbalance {
     pub section: RotorSection,
-    /// kg·m.
+    /// Mass times eccentricity, kg·m.
     pub size: f64,
-    /// From the section's own Y towards its Z, rad.
+    /// Angle from the section's Y towards its Z, rad.
     pub angle: f64,
 }
 
@@ -61,13 +61,13 @@ impl Joint {
         [0..3, 3..6].map(|axes| self.law.damping[axes].iter().copied().fold(0.0, f64::max))
     }
 
-    /// What it adds to the square of the highest frequency of the solid at most, 1/s²: by Weyl's bound, of springs that hold a
-    /// node's part of the section each.
+    /// Largest addition to the square of the solid's highest frequency, 1/s²: Weyl's bound for springs on the nodes of
+    /// the section.
     fn added(&self, per_mass: impl Fn(u32) -> f64) -> f64 {
         self.felt(self.stiffness(), per_mass)
     }
 
-    /// Of springs or dashpots against a shift and a turn what a mass of its nodes feels of them at most, over that mass.
+    /// Largest stiffness or damping of a displacement and a rotation over the mass of a node.
     fn felt(&self, [shift, turn]: [f64; 2], per_mass: impl Fn(u32) -> f64) -> f64 {
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let of = |force: Vec3, moment: Vec3| -> f64 {
@@ -80,7 +80,7 @@ impl Joint {
     }
 }
 
-/// The law with its body at one instant.
+/// Forces of the spring with its body at one instant.
 pub fn pulled(joint: &Joint, place: &SectionPlace, body: &BodyState) -> SpringForces {
     let section = BodyKinematics::new(BodyState {
         position: place.centre,
@@ -91,30 +91,30 @@ pub fn pulled(joint: &Joint, place: &SectionPlace, body: &BodyState) -> SpringFo
     spring_dashpot(&joint.law, [&section, &BodyKinematics::new(*body)], &[])
 }
 
-/// A joint in the present window.
+/// A joint in the present coupling step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointNow {
     pub joint: Joint,
-    /// On its body since the start, and lost in its dashpots, J.
+    /// Work on its body, and heat in its dashpots, since the start, J.
     pub work: f64,
     pub heat: f64,
-    /// The body at the beginning; impulse (N·s) and moment of impulse (N·m·s) on it.
+    /// The body at the beginning of the coupling step; impulse (N·s) and angular impulse (N·m·s) on it.
     from: BodyState,
     handed: Wrench,
-    /// Where the section is in this step, and force and moment on it.
+    /// Position of the section in this step; force and moment on it.
     place: Option<SectionPlace>,
     on_section: Wrench,
 }
 
-/// A joint at one time, for the ledger.
+/// Energies of a joint at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointSnapshot {
-    /// Held by its springs, J.
+    /// Stored by its springs, J.
     pub stored: f64,
     /// Since the start, J.
     pub heat: f64,
     pub work: f64,
-    /// What it does to the body up to where the solid's displacements are, J.
+    /// Work on the body up to the time of the solid's displacements, J.
     pub to_come: f64,
 }
 
@@ -125,13 +125,13 @@ pub struct SteppedShaft {
     pub joints: Vec<JointNow>,
     pub unbalances: Vec<SectionUnbalance>,
     pub watched: Vec<(String, RotorSection)>,
-    /// Of unbalances on the shaft since the start, J.
+    /// Work of unbalances on the shaft since the start, J.
     pub unbalance_work: f64,
-    /// How often sections and what sits on them were looked at.
+    /// Number of evaluations of sections and attachments.
     pub looks: u64,
-    /// Of the unbalances in this step, N.
+    /// Forces of the unbalances in this step, N.
     forces: Vec<Vec3>,
-    /// Of its nodes about X, kg·m².
+    /// Moment of inertia of its nodes about X, kg·m².
     axial_inertia: f64,
 }
 
@@ -159,20 +159,20 @@ impl SteppedShaft {
         }
     }
 
-    /// What its joints add to the square of the solid's highest frequency at most, 1/s².
+    /// Largest addition of its joints to the square of the solid's highest frequency, 1/s².
     pub(crate) fn added(&self, solid: &ExplicitSolid) -> f64 {
         self.joints.iter().map(|now| now.joint.added(|node| per_mass(solid, node))).sum()
     }
 
-    /// The longest step of the solid with which dashpots, which see velocities half a step old, do not overshoot, s.
+    /// Longest step of the solid, s, at which dashpots, which lag half a step, do not overshoot.
     pub(crate) fn braked(&self, solid: &ExplicitSolid) -> f64 {
         let joints = self.joints.iter().map(|now| &now.joint);
         let rates = joints.map(|joint| joint.felt(joint.damping(), |node| per_mass(solid, node)));
         BRAKED / rates.sum::<f64>()
     }
 
-    /// Turns the nodes of a solid that has not been stepped: velocities of a rigid body at the start, displacements half a step
-    /// later.
+    /// Sets the nodes of a solid before its first step to rotate: velocities of a rigid body at the start,
+    /// displacements half a step later.
     pub(crate) fn spin_up(&self, solid: &mut ExplicitSolid) {
         let speed = self.speed.value(0.0);
         let spin = Vector3::x() * speed;
@@ -193,7 +193,7 @@ impl SteppedShaft {
         }
     }
 
-    /// Looks at its sections before a step of the solid, `after` s since the window began.
+    /// Evaluates its sections before a step of the solid, `after` s from the beginning of the coupling step.
     pub(crate) fn begin_step(&mut self, solid: &ExplicitSolid, after: f64) {
         let step = solid.step_size;
         self.looks += 1;
@@ -211,13 +211,13 @@ impl SteppedShaft {
         self.book(solid);
     }
 
-    /// Books what the unbalances do in half a step at the present rates.
+    /// Books the work of the unbalances in half a step at the present rates.
     fn book(&mut self, solid: &ExplicitSolid) {
         let half = 0.5 * solid.step_size;
         self.unbalance_work += half * self.unbalance_power(&solid.rate);
     }
 
-    /// Of the unbalances of this step on nodes that move so fast (m/s), W.
+    /// Power of the unbalances of this step at these rates of the nodes (m/s), W.
     fn unbalance_power(&self, rates: &[Node]) -> f64 {
         let rate = of(rates);
         let pull = |(of, force): (&SectionUnbalance, &Vec3)| -> f64 {
@@ -232,7 +232,7 @@ impl SteppedShaft {
         self.book(solid);
     }
 
-    /// The forces of this step on the nodes, N.
+    /// Adds the forces of this step to those of the nodes, N.
     pub(crate) fn push(&self, forces: &mut [Node]) {
         for now in &self.joints {
             let Some(place) = &now.place else { continue };
@@ -244,7 +244,7 @@ impl SteppedShaft {
         }
     }
 
-    /// Of its joints `ahead` s after the bodies' time, where the solid is; adds all forces on nodes (N).
+    /// Energies of its joints `ahead` s after the time of the bodies; adds all forces to those of the nodes (N).
     pub(crate) fn snapshot(
         &self,
         simulation: &Simulation,
@@ -280,7 +280,7 @@ impl SteppedShaft {
         (joints, work)
     }
 
-    /// Centres of the watched sections at the bodies' time, half a step before the solid's displacements, m.
+    /// Centres of the recorded sections at the time of the bodies, half a step before the solid's displacements, m.
     pub fn watched_centres<'s>(
         &'s self,
         solid: &'s ExplicitSolid,
@@ -291,21 +291,22 @@ impl SteppedShaft {
         })
     }
 
-    /// Of its nodes, which spin whatever else happens, J: no part of what a run turns over.
+    /// Kinetic energy of the steady spin of its nodes, J, which a run does not turn over.
     pub(crate) fn spin_energy(&self, time: f64) -> f64 {
         let speed = self.speed.value(time);
         0.5 * self.axial_inertia * speed * speed
     }
 
-    /// Numbers that go with a state: of each joint work and heat, and the work of unbalances, J.
+    /// Numbers of the state: work and heat of each joint, and work of unbalances, J.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         let joints = self.joints.iter().flat_map(|now| [now.work, now.heat]);
         joints.chain([self.unbalance_work]).collect()
     }
 
-    /// The same put back.
+    /// Restores [`ShaftState::numbers`].
     ///
     /// # Panics
+    ///
     /// If they are of another shaft.
     pub(crate) fn restore(&mut self, numbers: &[f64]) {
         assert_eq!(numbers.len(), 2 * self.joints.len() + 1);
@@ -318,21 +319,21 @@ impl SteppedShaft {
 }
 
 impl JointNow {
-    /// What the window's impulse comes to as a load over all of it, N and N·m.
+    /// Mean load of the impulse over the coupling step, N and N·m.
     pub(crate) fn mean_load(&self, window: f64) -> Wrench {
         mean_over(&self.handed, window)
     }
 
-    /// Books what that load did to the body while it came to `to`.
+    /// Books the work of that load on the body up to its state `to`.
     pub(crate) fn book(&mut self, window: f64, to: &BodyState) {
         self.work += work_on_way(&self.mean_load(window), &self.from, to);
     }
 }
 
-/// Rate of a dashpot times the step or window in which it brakes by what it saw before: stable below 1, halved.
+/// Damping rate times the step or coupling step: stable below 1, halved for safety.
 pub(crate) const BRAKED: f64 = 0.5;
 
-/// 1/kg, along the axis where it is largest.
+/// Inverse mass of a node, 1/kg, along the axis where it is largest.
 fn per_mass(solid: &ExplicitSolid, node: u32) -> f64 {
     let of = solid.model.per_mass[node as usize];
     of[0].max(of[1]).max(of[2])
@@ -345,7 +346,7 @@ fn of(list: &[Node]) -> impl Fn(u32) -> Vec3 + '_ {
     }
 }
 
-/// A section where the nodes have it, with the rates of half a step before.
+/// Position of a section from the nodes, with the rates of half a step before.
 fn place_of(section: &RotorSection, solid: &ExplicitSolid) -> SectionPlace {
     section.place(of(&solid.displacement), of(&solid.rate))
 }
@@ -359,7 +360,7 @@ fn add_to(forces: &mut [Node], more: impl Iterator<Item = (u32, Vec3)>) {
     }
 }
 
-/// Force of an unbalance at a time (s): outwards with the square of the speed, and back where the speed grows, N.
+/// Force of an unbalance at a time (s), N: outwards with the square of the speed, and backwards as the speed grows.
 pub fn unbalanced(of: &SectionUnbalance, speed: &Profile, place: &SectionPlace, t: f64) -> Vec3 {
     let (sine, cosine) = libm::sincos(of.angle);
     let outwards: Vec3 = (place.orientation * Vector3::new(0.0, cosine, sine)).into();

@@ -1,5 +1,5 @@
-//! A solid in explicit steps of its own with the seats in its bores and what sits on its sections, between two exchanges with the
-//! bodies.
+//! A solid in explicit steps, with the races in its bores and the attachments of its sections, between two exchanges
+//! with the bodies.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::plan::Stage;
@@ -12,28 +12,28 @@ use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::SolidError;
 use crate::solids::tet4_blocks::Node;
 
-/// A solid in steps of its own, the seats in its bores, and what sits on it where it is a shaft.
+/// A solid in explicit steps, its housing fits, and its attachments if it is a shaft.
 pub struct SteppedSolid {
     pub name: Option<String>,
     pub solid: ExplicitSolid,
-    /// In a window.
+    /// Number in a coupling step.
     pub steps: usize,
     pub seats: Vec<SeatState>,
     pub shaft: Option<Box<SteppedShaft>>,
 }
 
-/// A solid with its seats at the present time.
+/// A solid with its housing fits at the present time.
 #[derive(Clone, Debug)]
 pub struct SolidSnapshot {
     pub ledger: SolidLedger,
     pub seats: Vec<SeatSnapshot>,
     pub joints: Vec<JointSnapshot>,
-    /// Of unbalances on a shaft since the start, J.
+    /// Work of unbalances on a shaft since the start, J.
     pub unbalance_work: f64,
 }
 
 impl SteppedSolid {
-    /// Through a window whose beginning its seats have been told, in which their bodies are as if free.
+    /// Takes the steps of a coupling step, with the bodies of its housing fits as free.
     pub(crate) fn through_window(&mut self) -> Result<(), SolidError> {
         let step = self.solid.step_size;
         for k in 0..self.steps {
@@ -59,12 +59,12 @@ impl SteppedSolid {
         Ok(())
     }
 
-    /// What messages and summaries call it.
+    /// Kind of the solid in messages and summaries.
     pub fn kind(&self) -> &'static str {
         if self.shaft.is_some() { "shaft" } else { "housing" }
     }
 
-    /// How often each stage ran, but for seats.
+    /// Number of runs of each stage, without housing fits.
     pub(crate) fn ran(&self) -> Counts {
         let mut ran = self.solid.ran;
         if let Some(shaft) = &self.shaft {
@@ -80,7 +80,7 @@ impl SteppedSolid {
         self.shaft.iter_mut().for_each(|shaft| shaft.looks = 0);
     }
 
-    /// In windows of so many s, before the first one.
+    /// Sets the steps for a coupling step of this length (s), before the first one.
     pub(crate) fn step_in(&mut self, window: f64) {
         self.solid.step_size = window / self.steps as f64;
         self.solid.time = 0.5 * self.solid.step_size;
@@ -89,7 +89,7 @@ impl SteppedSolid {
         }
     }
 
-    /// Energies of solid and seats, their bodies where `simulation` has them.
+    /// Energies of the solid and its housing fits, with the bodies of `simulation`.
     pub(crate) fn snapshot(&mut self, simulation: &Simulation) -> SolidSnapshot {
         let SteppedSolid { solid, seats, shaft, .. } = self;
         let ahead = 0.5 * solid.step_size;
@@ -122,7 +122,7 @@ impl SteppedSolid {
     }
 }
 
-/// Puts the seats into their solids, with the nodes under the races alone; returns them in that order.
+/// Assigns the housing fits to their solids, with the nodes under the races; returns them in that order.
 pub(crate) fn seated(
     assembly: &Assembly,
     solids: &mut [SteppedSolid],

@@ -1,5 +1,4 @@
-//! The largest of what every accepted step has led to, whatever rows are written: of the contacts of an
-//! evaluation that the step makes anyway.
+//! Largest values over all accepted steps, whatever rows are written, from contacts that are evaluated anyway.
 
 use crate::kinematics::vec3::{dot, norm, sub};
 use crate::motion::system::System;
@@ -13,7 +12,7 @@ pub struct Extreme {
 }
 
 impl Extreme {
-    /// The first of equal values stays, so that looking twice at one state changes nothing.
+    /// The first of equal values stays, so that recording a state twice changes nothing.
     fn take(&mut self, value: f64, ball: usize, time: f64) {
         if value > self.value {
             *self = Extreme { value, ball, time };
@@ -21,10 +20,10 @@ impl Extreme {
     }
 }
 
-/// Contacts that carry less than this part of the largest load so far tell nothing of where loads go.
+/// Contacts below this fraction of the largest load so far do not count for angles.
 const WORTH_A_LOOK: f64 = 0.01;
 
-/// Of the contacts with one race.
+/// Extremes of the contacts with one race.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RaceExtremes {
     /// Normal load, N.
@@ -33,25 +32,25 @@ pub struct RaceExtremes {
     pub edge: Extreme,
     /// Contact angle there, rad, without sign.
     pub edge_angle: f64,
-    /// Sine of the contact angle on the other side of the groove than a positive one is on.
+    /// Sine of the contact angle on the side opposite to a positive one.
     pub reversed: Extreme,
 }
 
-/// Since the start.
+/// Extremes since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
     /// Inner, outer.
     pub races: [RaceExtremes; 2],
-    /// Centre of the inner race from where the bearing sits, m.
+    /// Displacement of the inner race's centre from the bearing's position, m.
     pub farthest: Extreme,
-    /// Centre of the inner race from that of the outer one, m.
+    /// Distance between the centres of inner and outer race, m.
     pub apart: Extreme,
-    /// Load between a ball and the next one, N.
+    /// Load between neighbouring balls, N.
     pub between_balls: Extreme,
 }
 
 impl Extremes {
-    /// Takes note of the races and contacts of a bearing as they were evaluated last.
+    /// Records the races and contacts of a bearing as last evaluated.
     pub fn record(&mut self, system: &System, index: usize, time: f64) {
         let (set, bearing) = (&system.sets[index], &system.assembly.bearings[index]);
         let layout = &set.layout;
@@ -96,7 +95,7 @@ impl Extremes {
         }
     }
 
-    /// As plain numbers, in a fixed order.
+    /// Plain numbers in a fixed order.
     pub fn to_numbers(&self) -> Vec<f64> {
         let of = |e: &Extreme| [e.value, e.ball as f64, e.time];
         let races = self.races.iter().flat_map(|race| {
@@ -107,12 +106,12 @@ impl Extremes {
         races.chain(others.into_iter().flat_map(of)).collect()
     }
 
-    /// Of several bearings, from [`Extremes::to_numbers`] of each; `None` if they are not as many.
+    /// Extremes of several bearings, from [`Extremes::to_numbers`] of each; `None` if the count is wrong.
     pub fn all_from_numbers(numbers: &[f64]) -> Option<Vec<Extremes>> {
         numbers.chunks(Extremes::default().to_numbers().len()).map(Extremes::from_numbers).collect()
     }
 
-    /// From [`Extremes::to_numbers`]; `None` if they are not as many.
+    /// From [`Extremes::to_numbers`]; `None` if the count is wrong.
     pub fn from_numbers(numbers: &[f64]) -> Option<Extremes> {
         let mut left = numbers.iter().copied();
         let mut next = || left.next();

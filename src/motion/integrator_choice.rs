@@ -25,7 +25,7 @@ pub struct Choice {
 }
 
 /// Integrator with error control for an assembly. Traction is judged in equilibrium after the last corner of loads and
-/// given motions, where a run-up has reached its speed.
+/// prescribed motions, when a run-up has reached its speed.
 pub fn choose(assembly: &Assembly) -> Choice {
     let rosenbrock = |reason: String| Choice { integrator: Integrator::Rosenbrock, reason };
     if !assembly.solids.is_empty() {

@@ -1,16 +1,15 @@
-//! Contacts at one state as springs, dashpots and slopes of friction between a ball and a hub: what
-//! a linearly implicit step takes for the Jacobian.
+//! Contacts at one state as springs, dashpots and slopes of friction between a ball and a hub: the Jacobian of a
+//! linearly implicit step.
 //!
-//! In it are, all symmetric: the normal stiffness (Hertz, damping, penalty) of race, pocket and
-//! guide contacts; the slope of traction by slip and spin; the slope of the cage's friction by
-//! sliding; foundations; springs and dampers of reduced solids and the penalty of their seats.
+//! The symmetric matrix contains the normal stiffness (Hertz, damping, penalty) of race, pocket and guide contacts; the
+//! slope of traction by slip and spin; the slope of cage friction by sliding; foundations; springs and dashpots of
+//! reduced solids and the penalty of their housing fits.
 //!
-//! How slip changes as the contact point moves round the bodies, and how traction follows the normal
-//! load, is known too, but only for displacements in a right-hand side: that keeps the matrix
-//! symmetric and moves its slopes by a part hγ · (turning rate) of themselves. Orbits turn in frames of
-//! their own ([`crate::motion::orbit_frame`]). Left out are how the direction of the normal force turns as a
-//! ball leaves its frame's axes, how traction follows the entrainment speed,
-//! gyroscopic moments, those of bending shafts too. A W-method keeps its order without them.
+//! The change of slip as the contact point moves on the bodies, and of traction with the normal load, is included for
+//! displacements in a right-hand side only. That keeps the matrix symmetric and changes its slopes by a part hγ ·
+//! (rotation rate). Orbits are described in rotating frames ([`crate::motion::orbit_frame`]). The matrix omits the
+//! rotation of the normal force as a ball leaves the axes of its frame, the dependence of traction on entrainment
+//! speed, and gyroscopic moments, also those of flexible shafts. A W-method keeps its order without them.
 
 use crate::assembly::lists::{Bearing, Mobility};
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};
@@ -46,28 +45,28 @@ pub struct LaneContact {
     pub rows: usize,
     pub on_ball: Lever<Lane>,
     pub on_hub: Lever<Lane>,
-    /// Along the normal, N/m and N·s/m.
+    /// Normal stiffness and damping, N/m and N·s/m.
     pub stiffness: Lane,
     pub damping: Lane,
     /// Negated derivatives of t, s and spin parts: tt, ts, tn, ss, sn, nn.
     pub slope: [Lane; 6],
-    /// Change of slip along t and s and of spin about n as the ball's centre moves against the
-    /// hub's, 1/s and 1/(m·s): the contact point moves round both bodies.
+    /// Change of slip along t and s and of spin about n per displacement of the ball's centre relative to the hub, 1/s
+    /// and 1/(m·s): the contact point moves on both bodies.
     pub carried: [[Lane; 3]; 3],
-    /// Traction along t and s and moment about n that a unit of normal load makes.
+    /// Traction along t and s and moment about n per unit of normal load.
     pub per_load: [Lane; 3],
-    /// Motion along the four rows that the hub's prescribed velocities make.
+    /// Relative motion along the four rows due to prescribed velocities of the hub.
     pub driven: [Lane; 4],
-    /// How turns of the hub shift the race's centre, where it does not sit at the hub's.
+    /// Displacement of the race's centre per rotation of the hub; `None` if the centres coincide.
     pub shifts: Option<[[f64; 3]; 3]>,
 }
 
-/// What pushes back between two hubs: a cage on its guiding race, a spring with its dashpot.
+/// Contact or spring between two hubs: a cage on its guiding race, a spring with its dashpot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Joint {
-    /// `None` for an end that is fixed.
+    /// `None` for a fixed end.
     pub hubs: [Option<usize>; 2],
-    /// Rows in use; none where nothing touches.
+    /// Rows in use; zero without contact.
     pub count: usize,
     pub rows: [JointRow; connection::ROWS],
 }
@@ -75,36 +74,36 @@ pub struct Joint {
 /// One direction of a joint.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct JointRow {
-    /// Relative motion that the six velocities of each hub make.
+    /// Relative motion per velocity of each hub, six each.
     pub levers: [[f64; 6]; 2],
     /// N/m, N·m/rad.
     pub stiffness: f64,
-    /// N·s/m, N·m·s/rad; of friction the slope by sliding.
+    /// N·s/m, N·m·s/rad; for friction the slope by sliding.
     pub damping: f64,
 }
 
 /// Maxwell elements along the rows of a joint.
 #[derive(Clone, Debug, Default)]
 pub struct Relaxing {
-    /// In [`Linearised::joints`].
+    /// Index in [`Linearised::joints`].
     pub joint: usize,
-    /// First of their entries in the state.
+    /// First entry in the state.
     pub at: usize,
     pub elements: Vec<MaxwellElement>,
 }
 
-/// Shapes of a reduced solid, one equation each with a mass of 1 kg.
+/// Modes of a reduced solid, one equation each with a mass of 1 kg.
 #[derive(Clone, Debug, Default)]
 pub struct Shapes {
-    /// First of its entries in the state.
+    /// First entry in the state.
     pub at: usize,
     /// ω², 1/s², and α, 1/s.
     pub stiffness: Vec<f64>,
     pub damping: f64,
 }
 
-/// A race in the bore of a reduced solid: one direction for each node that touches. How the normals turn, load over
-/// radius against the stiffness (a part of 1e-4), is left out.
+/// A race in the bore of a reduced solid: one row for each contact node. The rotation of the normals, load over radius
+/// relative to the stiffness (1e-4), is omitted.
 #[derive(Clone, Debug, Default)]
 pub struct SeatJoint {
     pub hub: Option<usize>,
@@ -115,31 +114,31 @@ pub struct SeatJoint {
 /// Approach of race and bore at a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeatRow {
-    /// In the surface.
+    /// Index in the surface.
     pub node: usize,
     /// N/m.
     pub stiffness: f64,
-    /// That the six velocities of the hub make.
+    /// Approach per velocity of the hub.
     pub lever: [f64; 6],
-    /// That the node's speed along its own normal makes.
+    /// Approach per speed of the node along its own normal.
     pub along: f64,
 }
 
-/// A body that many balls touch. Its rotations count about `basis`.
+/// A body in contact with many balls. Its rotations are about `basis`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hub {
     /// First of its 13 entries in the state.
     pub at: usize,
-    /// Axis and the two directions of the tilts.
+    /// Axis and the two tilt directions.
     pub basis: [Vec3; 3],
     /// kg, kg·m².
     pub inertia: [f64; 6],
-    /// To the ground.
+    /// Stiffness to the ground.
     pub stiffness: [f64; 6],
     pub damping: [f64; 6],
-    /// Zero for what is prescribed, else one.
+    /// Zero for a prescribed velocity, otherwise one.
     pub free: [f64; 6],
-    /// Prescribed velocities, zero for what is free.
+    /// Prescribed velocities, zero where free.
     pub prescribed: [f64; 6],
 }
 
@@ -147,25 +146,25 @@ pub struct Hub {
 #[derive(Clone, Debug, Default)]
 pub struct BallBlock {
     pub bearing: usize,
-    /// First ball.
+    /// Index of the first ball.
     pub first: usize,
-    /// With the inner race, the outer race, the pockets.
+    /// Contacts with the inner race, the outer race, the pockets.
     pub contacts: [LaneContact; 3],
 }
 
-/// Everything that pushes back at one state.
+/// All contacts and springs at one state.
 #[derive(Clone, Debug, Default)]
 pub struct Linearised {
     pub blocks: Vec<BallBlock>,
     /// Both ends of the cage of each bearing on its guiding race, two a bearing; then connections.
     pub joints: Vec<Joint>,
     pub relaxing: Vec<Relaxing>,
-    /// Bodies that move, in their order; then sections of those that bend where something takes hold of them.
+    /// Moving bodies in their order, then attachment sections of flexible bodies.
     pub hubs: Vec<Hub>,
     pub sections: Vec<SectionHub>,
-    /// Of bodies that bend; their stiffness and damping count along one direction each.
+    /// Modes of flexible bodies; stiffness and damping of one direction each.
     pub shafts: Vec<Shapes>,
-    /// Of each body of the assembly.
+    /// Hub of each body of the assembly.
     pub hub_of: Vec<Option<usize>>,
     pub solids: Vec<Shapes>,
     pub seats: Vec<SeatJoint>,
@@ -241,12 +240,12 @@ impl Linearised {
         Linearised { blocks, joints, relaxing, hubs, sections, shafts, hub_of, solids, seats }
     }
 
-    /// Hubs that are bodies.
+    /// Number of hubs that are bodies.
     pub fn bodies(&self) -> usize {
         self.hubs.len() - self.sections.len()
     }
 
-    /// Takes up the contacts that `system` has just evaluated, slopes included.
+    /// Linearises the contacts that `system` has just evaluated, slopes included.
     pub fn update(&mut self, system: &System, state: &[f64]) {
         let Linearised { blocks, joints, hubs, sections, hub_of, seats, .. } = self;
         for ((body, now), hub) in system.assembly.bodies.iter().zip(&system.bodies).zip(hub_of) {
@@ -287,7 +286,7 @@ impl Linearised {
         }
         let held = system.assembly.seats.iter().zip(&system.holds.seats);
         for ((joint, (seat, hold)), now) in seats.iter_mut().zip(held).zip(&system.seats) {
-            // Levers count about the hub's centre, from where the seat may be some way along the shaft.
+            // Levers are about the hub's centre, which may be at another position along the shaft than the race.
             let body = &system.bodies[seat.race.body];
             let off = match hold {
                 Some(_) => [0.0; 3],
@@ -298,7 +297,7 @@ impl Linearised {
     }
 }
 
-/// About what the levers of a hub count: the centre of a section that is held, else of the body.
+/// Reference point of the levers of a hub: the centre of its section, or of the body.
 fn centre_of_hub(hold: &Option<SectionAttachment>, body: &BodyKinematics) -> Vec3 {
     hold.as_ref().map_or(body.motion.position, |hold| hold.now.race.motion.position)
 }
@@ -368,7 +367,7 @@ fn update_connection(
     for (to, row) in joint.rows.iter_mut().zip(rows) {
         (to.stiffness, to.damping) = (row.stiffness, row.damping);
         for (end, [linear, turning]) in row.on.into_iter().enumerate() {
-            // Levers count about the hub's centre, from where the section may be some way along the shaft.
+            // Levers are about the hub's centre, which may be at another position along the shaft than the section.
             let centre = centre_of_hub(&holds[end], &bodies[of.ends[end].body]);
             let off = sub(ends[end].motion.position, centre);
             to.levers[end] = joint.hubs[end].map_or([0.0; 6], |hub| {
@@ -396,7 +395,7 @@ fn race_hub(body: &DrivenBody, at: usize) -> Hub {
     }
 }
 
-/// Directions and foundation of a race where it lies now.
+/// Updates directions and foundation of a race.
 fn turn_race(hub: &mut Hub, body: &DrivenBody, now: &BodyKinematics) {
     let [e2, e3] = now.tilt_directions;
     hub.basis = [now.motion.axis, e2, e3];
@@ -413,14 +412,14 @@ fn turn_race(hub: &mut Hub, body: &DrivenBody, now: &BodyKinematics) {
     }
 }
 
-/// Row of a lever on a hub, what is prescribed left out.
+/// Row of a lever on a hub, without prescribed velocities.
 pub(crate) fn on_hub(hub: &Hub, linear: Vec3, turning: Vec3) -> [f64; 6] {
     let [a, b, c] = hub.basis.map(|axis| dot(axis, turning));
     let all = [linear[0], linear[1], linear[2], a, b, c];
     std::array::from_fn(|i| all[i] * hub.free[i])
 }
 
-/// Relative motion along a row of a lever that the prescribed velocities of the hub make.
+/// Relative motion along a row of a lever due to prescribed velocities of the hub.
 pub(crate) fn driven(hub: &Hub, linear: Vec3, turning: Vec3) -> f64 {
     let [a, b, c] = hub.basis.map(|axis| dot(axis, turning));
     let all = [linear[0], linear[1], linear[2], a, b, c];

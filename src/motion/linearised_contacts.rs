@@ -20,7 +20,7 @@ pub(crate) fn race_contacts(
     let BallSet { layout, laws, table, .. } = set;
     let race = &set.races[side];
     let law = &laws.races[side];
-    // Levers count about the hub's centre, from where the race's may be some way along the shaft.
+    // Levers are about the hub's centre, which may be at another position along the shaft than the race.
     let off = sub(race.motion.position, hub_centre);
     to.shifts = hub.filter(|_| off != [0.0; 3]).map(|hub| hub.basis.map(|axis| cross(axis, off)));
     to.rows = 0;
@@ -29,7 +29,7 @@ pub(crate) fn race_contacts(
         let ball = first + lane;
         let pair = side * layout.padded + ball;
         if ball >= layout.balls || table.load[pair] <= 0.0 {
-            // Nothing pushes back: levers of no consequence.
+            // No restoring force: the levers are irrelevant.
             to.stiffness[lane] = 0.0;
             to.damping[lane] = 0.0;
             for slope in &mut to.slope {
@@ -111,19 +111,19 @@ pub(crate) fn race_contacts(
     }
 }
 
-/// An arm from a race's centre as one from the centre of its hub.
+/// An arm from a race's centre as one from its hub's centre.
 pub(crate) fn from_hub(contact: &LaneContact, arm: Vec3, off: Vec3) -> Vec3 {
     if contact.shifts.is_some() { add(arm, off) } else { arm }
 }
 
-/// Push, direction of sliding and the one across; slope of the friction along the latter two.
+/// Contact force, direction of sliding, direction across it; slopes of the friction along the latter two.
 pub(crate) fn friction(contact: &CageContact, law: &CageContacts) -> ([Vec3; 3], [f64; 2]) {
     let push = contact.push;
     let speed = norm(contact.slip);
     let along = if speed > 0.0 {
         scale(contact.slip, 1.0 / speed)
     } else {
-        // Nothing slides: any direction across the push.
+        // Nothing slides: any direction across the contact force.
         let aside = if push[0] * push[0] < 0.5 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
         let across = cross(push, aside);
         scale(across, 1.0 / norm(across))

@@ -1,9 +1,9 @@
-//! Bodies that bend in the matrix of a linearly implicit step: a section where something takes hold is a hub of its
-//! own, without mass, whose six velocities follow from those of its body and of the shapes.
+//! Flexible shafts in the matrix of a linearly implicit step. Each attachment section is a massless hub, whose six
+//! velocities follow from those of its body and of the modes.
 //!
-//! Balls, joints and solids are eliminated into sections as into bodies; the small matrix over bodies and sections is then taken
-//! to bodies and shapes of bending by that dependence. What is of second order in bending, the
-//! shortening, is not in the matrix, as any may be left out: the method is of third order with every matrix.
+//! Balls, joints and solids are eliminated into sections as into bodies; the small matrix over bodies and sections is
+//! then projected onto bodies and bending modes. The shortening of second order in bending is omitted: the method is of
+//! third order with any matrix.
 
 use crate::assembly::mount::Mount;
 use crate::kinematics::vec3::{Vec3, cross, scale, sub};
@@ -12,7 +12,7 @@ use crate::motion::elimination::LdltMatrix;
 use crate::motion::linearised::{Hub, Linearised, Shapes, to_basis};
 use crate::motion::system::System;
 
-/// A hub that no mass of its own and nothing prescribed holds back.
+/// A hub without mass and prescribed velocities.
 pub(crate) const FREE: Hub = Hub {
     at: 0,
     basis: [[0.0; 3]; 3],
@@ -23,19 +23,20 @@ pub(crate) const FREE: Hub = Hub {
     prescribed: [0.0; 6],
 };
 
-/// A section of a body that bends.
+/// A section of a flexible body.
 #[derive(Clone, Debug, Default)]
 pub struct SectionHub {
-    /// Its number among the hubs, and its body's.
+    /// Index of its hub, and of its body's hub.
     pub hub: usize,
     pub body: Option<usize>,
     /// Index of the shaft in the assembly.
     pub shaft: usize,
-    /// Its six velocities, one column for each of its body's that is free, then for each shape along e₂, e₃ and the axis.
+    /// Its six velocities: one column for each free velocity of its body, then for each mode along e₂, e₃ and the axis.
     rows: [Vec<f64>; 6],
 }
 
-/// One for each hold of [`crate::members::section_attachments::SectionAttachments::all`], numbered after the bodies.
+/// One for each attachment of [`crate::members::section_attachments::SectionAttachments::all`], numbered after the
+/// bodies.
 pub(crate) fn sections(
     system: &System,
     hub_of: &[Option<usize>],
@@ -54,7 +55,7 @@ pub(crate) fn sections(
     all.map(section).collect()
 }
 
-/// Equations of the shapes of all shafts, along e₂, e₃ and the axis of each.
+/// Modal equations of all shafts, along e₂, e₃ and the axis of each.
 pub(crate) fn shapes(system: &System) -> Vec<Shapes> {
     let shafts = system.assembly.shafts.iter().zip(&system.shafts);
     let of = shafts.map(|(shaft, &at)| {
@@ -65,7 +66,7 @@ pub(crate) fn shapes(system: &System) -> Vec<Shapes> {
     of.collect()
 }
 
-/// Directions and dependence of all sections where they are now; `hubs` of bodies are up to date.
+/// Updates directions and dependence of all sections; the `hubs` of bodies are up to date.
 pub(crate) fn update(sections: &mut [SectionHub], hubs: &mut [Hub], system: &System) {
     let all = system.holds.all(&system.assembly);
     for (section, (hold, mount)) in sections.iter_mut().zip(all) {
@@ -120,17 +121,17 @@ pub(crate) fn update(sections: &mut [SectionHub], hubs: &mut [Hub], system: &Sys
     }
 }
 
-/// The small matrix with sections taken to bodies and shapes, and room to solve with it.
+/// The small matrix with sections projected onto bodies and modes, and its working memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bending {
-    /// Unknowns before, of hubs: where each is after, or the part of the section that it is.
+    /// For each unknown over hubs: its index after the projection, or its part of the section.
     from: Vec<Unknown>,
-    /// Over bodies and shapes of bending.
+    /// Over bodies and bending modes.
     matrix: LdltMatrix,
     right: Vec<f64>,
-    /// Where the columns of a section's rows are after.
+    /// Indices of the columns of a section's rows after the projection.
     columns: Vec<Vec<usize>>,
-    /// First of the shapes of bending of each shaft.
+    /// First bending mode of each shaft.
     first: Vec<usize>,
     product: Vec<f64>,
 }
@@ -154,7 +155,7 @@ impl Bending {
         let columns = linearised.sections.iter().map(|section| {
             let shaft = &linearised.shafts[section.shaft];
             let from = first[section.shaft];
-            // Of a body without equations the columns are zero, wherever they go.
+            // The columns of a body without equations are zero.
             let own = 6 * section.body.unwrap_or(0);
             (own..own + 6).chain(from..from + shaft.stiffness.len()).collect()
         });
@@ -172,7 +173,7 @@ impl Bending {
         }
     }
 
-    /// Takes `schur` over and factors it.
+    /// Projects `schur` and factors it.
     pub(crate) fn factor(&mut self, linearised: &Linearised, scale: f64, schur: &mut LdltMatrix) {
         let Bending { from, matrix, columns, first, product, .. } = self;
         matrix.clear();
@@ -211,7 +212,7 @@ impl Bending {
         matrix.factor();
     }
 
-    /// What sections have moved with their bodies and shapes in `r`.
+    /// Displacements of sections from those of bodies and modes in `r`.
     pub(crate) fn displace(&self, linearised: &Linearised, r: &[f64], moved: &mut [[f64; 6]]) {
         for section in &linearised.sections {
             let shaft = &linearised.shafts[section.shaft];
@@ -224,7 +225,7 @@ impl Bending {
         }
     }
 
-    /// Puts the rates of all hubs in place of their right-hand sides, and those of the shapes into `w`.
+    /// Replaces right-hand sides by the rates of all hubs, and writes those of the modes into `w`.
     pub(crate) fn solve(
         &mut self,
         linearised: &Linearised,

@@ -1,21 +1,20 @@
-//! Frames that turn with each ball's orbit within a step.
+//! Frames that rotate with each ball's orbit within a step.
 //!
-//! A stage that goes on along the tangent of an orbit of radius R leaves it by s²/2R: micrometres, as
-//! much as a contact is deep. In a frame that turns about X with the ball, and lies along the
-//! inertial axes where the step begins, a rolling ball stands nearly still: z' = Rᵀv − Ω × z, and
-//! the same for what velocity and spin become. Ω is constant within a step, so that any method keeps
-//! its order.
+//! A stage along the tangent of an orbit of radius R leaves it by s²/2R: micrometres, as much as a contact is deep. In
+//! a frame that rotates about X with the ball, and lies along the inertial axes at the beginning of the step, a rolling
+//! ball moves little: z' = Rᵀv − Ω × z, likewise for velocity and spin. Ω is constant within a step, so that any method
+//! keeps its order.
 
 use crate::assembly::state::{Layout, POSITION, SPIN, VELOCITY};
 
-/// Vectors of a ball that turn; its orientation stays inertial.
+/// Rotated vectors of a ball; its orientation stays inertial.
 const VECTORS: [usize; 3] = [POSITION, VELOCITY, SPIN];
 
 /// Angular velocities of the balls' frames about X, rad/s.
 #[derive(Clone, Debug)]
 pub struct OrbitFrames {
     rates: Vec<f64>,
-    /// Sine and cosine of the angles turned when [`OrbitFrames::turn`] was last called.
+    /// Sine and cosine of the angles at the last call of [`OrbitFrames::turn`].
     turned: Vec<(f64, f64)>,
 }
 
@@ -24,7 +23,7 @@ impl OrbitFrames {
         OrbitFrames { rates: vec![0.0; layout.balls], turned: vec![(0.0, 1.0); layout.balls] }
     }
 
-    /// Takes the angular velocities that the balls have about X; the frames lie along inertial axes.
+    /// Sets the angular velocities to those of the balls about X; the frames are along inertial axes.
     pub fn follow(&mut self, layout: &Layout, state: &[f64]) {
         for (ball, rate) in self.rates.iter_mut().enumerate() {
             let [_, y, z] = layout.ball_vector(state, POSITION, ball);
@@ -35,16 +34,16 @@ impl OrbitFrames {
         self.turned.fill((0.0, 1.0));
     }
 
-    /// Turns the frames to where they are `time` after the step began.
+    /// Rotates the frames by `time` from the beginning of the step.
     pub fn turn(&mut self, time: f64) {
         for (turned, rate) in self.turned.iter_mut().zip(&self.rates) {
             *turned = libm::sincos(rate * time);
         }
     }
 
-    /// Writes `time` times the velocities at which the frames carry the balls of `state` to the places of
-    /// their positions. To a frame the races and the pockets go round the other way; that is a change
-    /// with time which a linearly implicit step has to know, since contacts close by it.
+    /// Writes `time` times the velocities of the balls of `state` due to the frames' rotation to the entries of their
+    /// positions. In a frame the races and pockets rotate backwards: a change with time that closes contacts and that a
+    /// linearly implicit step has to include.
     pub fn drift(&self, layout: &Layout, time: f64, state: &[f64], to: &mut [f64]) {
         for (ball, rate) in self.rates.iter().enumerate() {
             let [_, y, z] = layout.ball_vector(state, POSITION, ball);
@@ -53,7 +52,7 @@ impl OrbitFrames {
         }
     }
 
-    /// Vectors of `state` from the frames as they are turned to inertial axes.
+    /// Transforms vectors of `state` from the rotated frames to inertial axes.
     pub fn to_inertial(&self, layout: &Layout, state: &mut [f64]) {
         for (ball, (sin, cos)) in self.turned.iter().enumerate() {
             for vector in VECTORS {
@@ -65,7 +64,7 @@ impl OrbitFrames {
         }
     }
 
-    /// Rates in inertial axes at `state` in inertial axes to those of the frames' vectors.
+    /// Transforms rates at `state`, both in inertial axes, to those of the frames' vectors.
     pub fn rates_to_frame(&self, layout: &Layout, state: &[f64], rates: &mut [f64]) {
         for (ball, (rate, (sin, cos))) in self.rates.iter().zip(&self.turned).enumerate() {
             for vector in VECTORS {

@@ -1,5 +1,5 @@
-//! A race's seat in the bore of a solid in explicit steps: which nodes are tested, what the contact does
-//! to race and solid, and what it has done since the start.
+//! Housing fit of a race in the bore of a solid in explicit steps: tested nodes, contact forces on race and solid,
+//! impulse and work since the start.
 
 use crate::assembly::lists::Body;
 use crate::assembly::mount::Mount;
@@ -24,38 +24,38 @@ use nalgebra::{UnitQuaternion, Vector3};
 /// A race in a bore.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seat {
-    /// As messages and columns name it; `None` for the only one.
+    /// Name in messages and columns; `None` for the only one.
     pub name: Option<String>,
-    /// Of the race, on a body of the assembly.
+    /// Mount of the race on a body of the assembly.
     pub mount: Mount,
-    /// Whose bore it is: index in the list of solids.
+    /// Index of the solid with the bore.
     pub solid: usize,
-    /// Of the race's outside, m; an interference grows in by it.
+    /// Outside radius of the race, m; a growing interference changes it.
     pub radius: Profile,
-    /// Of the race, m.
+    /// Width of the race, m.
     pub width: f64,
     pub penalty: Penalty,
     /// `None`: the bore is smooth.
     pub friction: Option<BoreFriction>,
     /// From [`contact_nodes`](crate::ch2_housing::bore_contact::contact_nodes).
     pub nodes: Vec<ContactNode>,
-    /// Nodes farther than this from touching are not tested until something has moved half as far,
-    /// m. Infinite: all are.
+    /// Nodes farther than this from contact are not tested until something has moved half as far, m. Infinite: all are
+    /// tested.
     pub reach: f64,
 }
 
-/// Work that growth of the race's radius does against the contact.
+/// Work of a growing race radius against the contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Growth {
     /// Since the start, J.
     pub work: f64,
-    /// When the contact was last evaluated, m, and what it resisted growth with, N.
+    /// Radius at the last evaluation of the contact, m, and the contact's radial load, N.
     pub radius: f64,
     pub load: f64,
 }
 
 impl Growth {
-    /// With the contact as it is at a later radius: the trapezium between the two.
+    /// Adds the work up to a later radius, by the trapezoidal rule.
     fn to(self, radius: f64, load: f64) -> Growth {
         let work = self.work + 0.5 * (self.load + load) * (radius - self.radius);
         Growth { work, radius, load }
@@ -63,7 +63,7 @@ impl Growth {
 }
 
 impl Seat {
-    /// " left", after what a message speaks of; nothing for the only one.
+    /// " left" in messages; empty for the only one.
     pub fn suffix(&self) -> String {
         self.name.as_ref().map_or(String::new(), |name| format!(" {name}"))
     }
@@ -73,8 +73,8 @@ impl Seat {
         Cylinder { radius: self.radius.value(t), width: self.width + 2.0 * rim }
     }
 
-    /// Leaves out the nodes beside the race where its body starts (X, Y, Z, m; tilts, rad), as a condensed
-    /// housing does. How far the others may slide over the rim and still be touched, m.
+    /// Drops the nodes beside the race at the start of its body (X, Y, Z, m; tilts, rad), as a condensed housing does.
+    /// Returns the axial displacement within which the others stay in contact, m.
     fn keep_under(&mut self, start: &[f64; 5]) -> f64 {
         let frame = self.frame_after(&rigid_body::fixed(start).state, 0.0);
         let width = self.width;
@@ -82,8 +82,8 @@ impl Seat {
         rim(self.nodes.iter().map(|node| node.area), width)
     }
 
-    /// ΣK for a shift of a body at rest at `centre` (m), N/m, Σ for its tilt and for its turn about its axis, N·m/rad, all nodes
-    /// touching and no spring of the friction slipping.
+    /// Stiffness with all nodes in contact and without slip, of a displacement, N/m, and of a tilt and a rotation about
+    /// the axis, N·m/rad, of a body at rest at `centre` (m).
     pub(crate) fn stiffness(&self, centre: Vec3) -> [f64; 3] {
         let mut sums = [0.0; 3];
         let (mut about_y, mut about_z) = (0.0, 0.0);
@@ -103,7 +103,7 @@ impl Seat {
         sums
     }
 
-    /// The body that carries the race, and the race, after `time` s if nothing pushes them.
+    /// Kinematics of the body of the race and of the race, after `time` s of free motion.
     fn carried(&self, body: &BodyState, time: f64) -> [BodyKinematics; 2] {
         let body = BodyKinematics::new(carried_on(body, time));
         [body, kinematics_at_mount(&body, &self.mount)]
@@ -114,7 +114,7 @@ impl Seat {
     }
 }
 
-/// A body after `time` s if nothing pushes it.
+/// A body after `time` s of free motion.
 pub(crate) fn carried_on(body: &BodyState, time: f64) -> BodyState {
     let turn = UnitQuaternion::from_scaled_axis(Vector3::from(body.spin) * time);
     BodyState {
@@ -124,15 +124,15 @@ pub(crate) fn carried_on(body: &BodyState, time: f64) -> BodyState {
     }
 }
 
-/// What an impulse and a moment of impulse (N·s, N·m·s) come to as loads over all of a window (s).
+/// Mean wrench of an impulse and an angular impulse (N·s, N·m·s) over a coupling step (s).
 pub(crate) fn mean_over(handed: &Wrench, window: f64) -> Wrench {
     Wrench { force: scale(handed.force, 1.0 / window), moment: scale(handed.moment, 1.0 / window) }
 }
 
-/// What loads do to a body in a window, J.
+/// Work of a constant wrench on a body in a coupling step, J.
 pub(crate) fn work_on_way(loads: &Wrench, from: &BodyState, to: &BodyState) -> f64 {
     let way = sub(to.position, from.position);
-    // A turn of a window is so small that its sine is the angle.
+    // The rotation in a coupling step is so small that its sine equals the angle.
     let turn = (to.orientation * from.orientation.inverse()).into_inner();
     let turn = scale([turn.i, turn.j, turn.k], 2.0 * turn.w.signum());
     dot(loads.force, way) + dot(loads.moment, turn)
@@ -143,22 +143,22 @@ fn frame(race: &BodyKinematics) -> Frame {
     Frame::new(&Pose { position: position.into(), orientation })
 }
 
-/// A seat at the present time.
+/// A housing fit at the present time.
 pub struct SeatState {
-    /// Its nodes are those under the race at the start.
+    /// With the nodes under the race at the start.
     pub seat: Seat,
-    /// How far a node may slide over the rim and still be touched, m.
+    /// Axial displacement within which nodes stay in contact, m.
     pub rim: f64,
-    /// Of the contact as last evaluated, its friction included.
+    /// Contact as last evaluated, friction included.
     pub contact: ContactSum,
     pub friction: Option<SeatFriction>,
-    /// On the race since the start, N·s.
+    /// Impulse on the race since the start, N·s.
     pub impulse: Vec3,
-    /// On its body since the start, J.
+    /// Work on its body since the start, J.
     pub work: f64,
-    /// Of an interference that grows in.
+    /// Work of a growing interference.
     pub growth: Growth,
-    /// Nodes tested so far, and how often they were sorted by reach.
+    /// Number of nodes tested, and of sorts by distance.
     pub tested: u64,
     pub sorts: u64,
     /// Evaluations of the contact.
@@ -166,33 +166,33 @@ pub struct SeatState {
     near: Vec<ContactNode>,
     far: Vec<(ContactNode, Vec3)>,
     sorted_at: (Cylinder, Frame),
-    /// The race's place at the start, m.
+    /// Position of the race at the start, m.
     start: Vec3,
-    /// In the present window: its body at the beginning; impulse (N·s) and moment of impulse about the
-    /// body's centre (N·m·s) on the body.
+    /// In the present coupling step: its body at the beginning; impulse (N·s) and angular impulse about the body's
+    /// centre (N·m·s) on the body.
     from: BodyState,
     handed: Wrench,
 }
 
-/// A seat at one time, for the ledger.
+/// Energies of a housing fit at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeatSnapshot {
-    /// With its friction, whose springs are not in its energy.
+    /// With friction, whose springs are not in its energy.
     pub contact: ContactSum,
     pub friction: FrictionSum,
-    /// On its body since the start, J.
+    /// Work on its body since the start, J.
     pub work: f64,
-    /// What the contact does to the race up to where the solid's displacements are, J.
+    /// Work of the contact on the race up to the time of the solid's displacements, J.
     pub to_come: f64,
-    /// Of an interference that grew in, J.
+    /// Work of a growing interference, J.
     pub growth_work: f64,
 }
 
-/// What ends a seat.
+/// Failure of a housing fit.
 pub(crate) enum Lost {
-    /// The race has left its bore: which way, how far, and how far it may, m.
+    /// The race has left its bore: direction, displacement and its limit, m.
     Bore(&'static str, f64, f64),
-    /// All of a reach is used up (m) before it was looked at again: nodes may have touched unseen.
+    /// Race and bore moved by more than the tested distance (m) between two checks: nodes may have touched untested.
     Reach(f64),
 }
 
@@ -226,13 +226,13 @@ impl SeatState {
         }
     }
 
-    /// The seat and its frame half a step of the solid ahead of `body`, where its displacements are.
+    /// Race and frame half a step of the solid ahead of `body`, at the time of its displacements.
     fn ahead(&self, body: &BodyState, solid: &ExplicitSolid) -> (Cylinder, Frame) {
         let frame = self.seat.frame_after(body, 0.5 * solid.step_size);
         (self.seat.cylinder(solid.time, self.rim), frame)
     }
 
-    /// Where the contact is looked at first, it has not grown yet.
+    /// Starts the work of growth at the first evaluation of the contact.
     pub(crate) fn grow_from(&mut self, solid: &ExplicitSolid) {
         let radius = self.seat.cylinder(solid.time, self.rim).radius;
         self.growth = Growth { radius, ..Growth::default() };
@@ -243,8 +243,8 @@ impl SeatState {
         self.handed = Wrench::default();
     }
 
-    /// The contact in a step of the solid at its time `t` (s), `after` s since the window began: its
-    /// forces go to the nodes' (N), its impulse over `step` (s) to the body.
+    /// Contact in a step of the solid at its time `t` (s), `after` s from the beginning of the coupling step: adds its
+    /// forces to those of the nodes (N) and its impulse over `step` (s) to the body.
     pub(crate) fn push_both(
         &mut self,
         t: f64,
@@ -271,18 +271,18 @@ impl SeatState {
         self.contact = sum;
     }
 
-    /// What the window's impulse comes to as a load on the body over all of it (N, N·m); from here on it counts.
+    /// Mean load of the impulse on the body over the coupling step (N, N·m); counts as its load from here on.
     pub(crate) fn take_mean_load(&mut self, window: f64) -> Wrench {
         self.impulse = add(self.impulse, self.handed.force);
         mean_over(&self.handed, window)
     }
 
-    /// Books what that load did to the body while it came to `to`.
+    /// Books the work of that load on the body up to its state `to`.
     pub(crate) fn book(&mut self, window: f64, to: &BodyState) {
         self.work += work_on_way(&mean_over(&self.handed, window), &self.from, to);
     }
 
-    /// Sorts the nodes of the bore into those that are tested and those out of reach.
+    /// Sorts the bore nodes into tested and distant ones.
     pub(crate) fn sort(&mut self, body: &BodyState, solid: &ExplicitSolid) {
         let (cylinder, frame) = self.ahead(body, solid);
         let at = |n: u32| moved(&solid.displacement, n);
@@ -293,15 +293,16 @@ impl SeatState {
         self.sorts += 1;
     }
 
-    /// Sorts again once half of the reach is used up.
+    /// Sorts again after a motion of half the tested distance.
     ///
     /// # Errors
-    /// A race that is no longer in its bore, or that nodes out of reach may have touched.
+    ///
+    /// A race outside its bore, or distant nodes that may have touched.
     pub(crate) fn check(&mut self, body: &BodyState, solid: &ExplicitSolid) -> Result<(), Lost> {
         let (cylinder, frame) = self.ahead(body, solid);
         let [along, across, up] = frame.centre;
         let start = self.start;
-        // Nodes no longer stand for what is under the race, or it hangs in the wall.
+        // Beyond these limits the nodes no longer represent the bore under the race.
         for (way, distance, allowed) in [
             ("along the axis", (along - start[0]).abs(), self.rim),
             ("across it", libm::hypot(across - start[1], up - start[2]), 0.1 * cylinder.radius),
@@ -333,18 +334,18 @@ impl SeatState {
         Ok(())
     }
 
-    /// Counts anew.
+    /// Resets the counts.
     pub(crate) fn forget_ran(&mut self) {
         self.presses = 0;
         self.friction.iter_mut().for_each(|friction| friction.pulls = 0);
     }
 
-    /// Nodes that are tested, and nodes out of reach.
+    /// Number of tested and of distant nodes.
     pub fn counts(&self) -> (usize, usize) {
         (self.near.len(), self.far.len())
     }
 
-    /// Nodes that touch while its body is here, and the force on each, N.
+    /// Contact nodes for this state of its body, and the force on each, N.
     pub(crate) fn nodal_forces(
         &self,
         body: &BodyState,
@@ -359,7 +360,7 @@ impl SeatState {
         found
     }
 
-    /// The contact at time `t` of the solid, `ahead` s after that of `body`; adds its forces on the nodes (N).
+    /// Contact at time `t` of the solid, `ahead` s after that of `body`; adds its forces to those of the nodes (N).
     pub(crate) fn snapshot(
         &self,
         body: &BodyState,

@@ -1,4 +1,4 @@
-//! Reduced housings as solids and seats of an assembly, and the equilibrium that a motion starts from.
+//! Reduced housings of an assembly, and the equilibrium from which a motion starts.
 
 use crate::assembly::lists::{Assembly, Bearing};
 use crate::assembly::mount::Mount;
@@ -15,8 +15,8 @@ use crate::solids::condensation::CondensedBore;
 use crate::solids::reduction::Reduction;
 use std::f64::consts::TAU;
 
-/// Adds a reduced housing and the seat of a body in it. The housing starts still and undeformed, the body where its
-/// `rest` is.
+/// Adds a reduced housing and the fit of a body in it. The housing starts at rest and undeformed, the body at its
+/// `rest`.
 pub fn add_housing(
     assembly: &mut Assembly,
     body: usize,
@@ -31,23 +31,24 @@ pub fn add_housing(
     assembly.solids.push(reduction.solid.clone());
 }
 
-/// What the equilibrium of a reduced housing needs besides the assembly.
+/// A reduced housing in the search for equilibrium.
 pub struct Housing<'h> {
     pub reduction: &'h Reduction,
-    /// As it was afterwards.
+    /// The condensed bore; updated by the search.
     pub bore: &'h mut CondensedBore,
-    /// Of the race at t = 0.
+    /// Fit of the race at t = 0.
     pub fit: Fit,
     pub penalty: Penalty,
 }
 
-/// Puts bodies in seats, and the solids of these, where they are in equilibrium under the loads at t = 0. There is one
-/// housing for each seat, in their order.
+/// Moves bodies in bores, and their solids, to equilibrium under the loads at t = 0. There is one housing for each
+/// housing fit, in their order.
 ///
-/// A bore is taken as the shapes have it, so that nothing rings of what they leave out, and its nodes as far from the race as the
-/// motion has them.
+/// The bore is represented by the modes, so that nothing oscillates because of omitted modes, and its nodes have the
+/// distance from the race that they have in motion.
 ///
 /// # Errors
+///
 /// No equilibrium.
 pub fn put_in_equilibrium(
     assembly: &mut Assembly,
@@ -92,12 +93,12 @@ pub fn put_in_equilibrium(
     Ok(found)
 }
 
-/// Natural frequency of a ball between its races, Hz, where `force` (N) is on the bearing: nothing in a bearing
-/// pushes its races faster.
+/// Natural frequency of a ball between its races, Hz, under `force` (N) on the bearing: the highest frequency of
+/// excitation in a bearing.
 pub fn ball_frequency(bearing: &Bearing, force: f64) -> f64 {
     let [inner, outer] = [bearing.inner_contact.stiffness, bearing.outer_contact.stiffness];
-    // The ball under the load carries five times the mean of all (Stribeck), besides the preload of a bearing
-    // without clearance.
+    // The most loaded ball carries five times the mean load (Stribeck), in addition to the preload of a bearing without
+    // clearance.
     let preload = (-bearing.geometry.radial_clearance).max(0.0);
     let share = libm::cbrt((outer / inner) * (outer / inner));
     let overlap = preload * share / (1.0 + share);

@@ -2,7 +2,7 @@
 
 use crate::motion::system::System;
 
-/// Room for the stages; allocated once.
+/// Working memory of the stages; allocated once.
 pub struct RungeKutta {
     rates: [Vec<f64>; 4],
     stage: Vec<f64>,
@@ -13,7 +13,7 @@ impl RungeKutta {
         RungeKutta { rates: std::array::from_fn(|_| vec![0.0; length]), stage: vec![0.0; length] }
     }
 
-    /// Advances `state` from `t` to `t + step`; shows the system as evaluated at `t` to `seen`.
+    /// Advances `state` from `t` to `t + step`; calls `seen` with the system as evaluated at `t`.
     pub fn step(
         &mut self,
         system: &mut System,

@@ -1,12 +1,10 @@
-//! How fast the static equilibrium moves as a bearing rolls on: the velocities of a start that does
-//! not ring.
+//! Velocity of the static equilibrium of a rolling bearing, for a start without transients.
 //!
-//! As the balls pass under the load the equilibrium goes to and fro (varying compliance). A race
-//! placed in it at rest lacks that velocity and rings about the moving equilibrium for as long as
-//! nothing damps it.
+//! As the balls pass under the load the equilibrium oscillates (varying compliance). A race placed in it at rest lacks
+//! that velocity and vibrates about the moving equilibrium until damped.
 //!
-//! Three equilibria say how fast it moves as long as they are one branch. Where loads leave the place open, or
-//! the race tips over from one place to another, their differences are no motion: all starts at rest there.
+//! Three equilibria give the velocity as long as they are on one branch. If loads do not determine the position, or the
+//! race jumps to another branch, all velocities are zero.
 
 use crate::assembly::lists::{Assembly, Bearing};
 use crate::assembly::loads::next_corner;
@@ -19,25 +17,25 @@ use std::f64::consts::TAU;
 /// Largest part of a ball pitch between two equilibria. The formula's error for the first harmonic
 /// is a third of the square of its phase: 1e-3.
 const PITCH_PART: f64 = 1e-2;
-/// Longest time between two of them, s: loads change in the meantime.
+/// Longest time between two of them, s; loads change in the meantime.
 const LONGEST: f64 = 1e-4;
-/// Two steps of one branch differ by no more than this part of the larger one. Loads that begin at nothing
-/// move a contact by t^(2/3), 0.41; a jump is the whole of it.
+/// Largest relative difference of two steps on one branch. Loads that begin at zero displace a contact by t^(2/3),
+/// 0.41; a jump is 1.
 const BEND: f64 = 0.5;
-/// Or by no more than this part of overlap and clearance: where the equilibrium turns round, its steps are as
-/// small as what they differ by, 0.004 of the amplitude.
+/// Or this part of overlap and clearance: at a turning point of the equilibrium its steps are as small as their
+/// difference, 0.004 of the amplitude.
 const TURN: f64 = 1e-2;
-/// Along directions without stiffness the search may stray by this part of them.
+/// Largest displacement along directions without stiffness, in the same unit.
 const STRAY: f64 = 1e-4;
 
-/// Rates of everything that equilibrium places.
+/// Rates of all coordinates of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rates {
     /// x, y, z (m/s) and the tilts (rad/s) of each body.
     pub bodies: Vec<[f64; 5]>,
     /// Along the outer race's axis and away from it for each ball of each bearing, m/s.
     pub balls: Vec<Vec<[f64; 2]>>,
-    /// Of the amplitudes of each body that bends, m/s.
+    /// Amplitudes of each flexible body, m/s.
     pub shafts: Vec<Vec<f64>>,
 }
 
@@ -52,12 +50,11 @@ impl Rates {
     }
 }
 
-/// Rates of the equilibrium `now` of t = 0 while balls go round and loads
-/// change as they do; by equilibria at and after t = 0, since profiles may begin there.
+/// Rates of the equilibrium `now` at t = 0 as balls orbit and loads change, from equilibria at and after t = 0, since
+/// profiles may begin there.
 ///
-/// At rest where nothing goes round, where the loads have no equilibrium a moment later, where they do not
-/// determine the place and where the three are not one branch. A ball without load has no place of its own
-/// and no rate.
+/// Zero if nothing rotates, if a later equilibrium does not exist, if the loads do not determine the position, and if
+/// the three are not on one branch. Unloaded balls have no rate.
 pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
     let rest = Rates::rest(assembly);
     let speeds: Vec<f64> =
@@ -79,7 +76,7 @@ pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
     if !one_branch(assembly, all) {
         return rest;
     }
-    // Of second order at t = 0; nothing moves to the bit if all three agree.
+    // Second order at t = 0; zero to the bit if all three agree.
     let rate = |[f0, f1, f2]: [f64; 3]| (4.0 * (f1 - f0) - (f2 - f0)) / (2.0 * dt);
     let body = |index: usize| {
         let places = all.map(|of| of.place(assembly, index));
@@ -119,8 +116,7 @@ pub fn rates(assembly: &Assembly, now: &Equilibrium) -> Rates {
     }
 }
 
-/// What the bearings leave their parts to move in: the deepest overlap of any of the equilibria and the largest
-/// clearance, m.
+/// Free play of the parts: the deepest overlap of any of the equilibria and the largest clearance, m.
 fn room(assembly: &Assembly, all: [&Equilibrium; 3]) -> f64 {
     let balls = all.into_iter().flat_map(|of| of.bearings.iter().flat_map(|b| &b.balls));
     let overlap =
@@ -129,21 +125,21 @@ fn room(assembly: &Assembly, all: [&Equilibrium; 3]) -> f64 {
     overlap + bearings.fold(0.0f64, |most, bearing| most.max(bearing.geometry.radial_clearance))
 }
 
-/// Whether three places (m) at equal times lie on one smooth course.
+/// Returns whether three positions (m) at equal times are on one smooth curve.
 fn bends_little([f0, f1, f2]: [f64; 3], room: f64) -> bool {
     let [before, after] = [f1 - f0, f2 - f1];
     (after - before).abs() <= (BEND * before.abs().max(after.abs())).max(TURN * room)
 }
 
-/// Whether all equilibria are determined by the loads and follow from each other without a jump.
+/// Returns whether all equilibria are determined by the loads and follow each other without a jump.
 fn one_branch(assembly: &Assembly, all: [&Equilibrium; 3]) -> bool {
     let [_, first, second] = all;
-    // Looked for near a known one, the search has tipped over to another.
+    // The search near a known equilibrium has jumped to another.
     if first.saddles_left + second.saddles_left > 0 {
         return false;
     }
     let room = room(assembly, all);
-    // Metres for tilts, of any bearing.
+    // Tilts as displacements, m, of any bearing.
     let arm = assembly.bearings.iter().fold(0.0f64, |most, b| most.max(b.geometry.pitch_radius));
     let scale = [1.0, 1.0, 1.0, arm, arm];
     let smooth = (0..assembly.bodies.len()).all(|body| {
@@ -153,10 +149,10 @@ fn one_branch(assembly: &Assembly, all: [&Equilibrium; 3]) -> bool {
     smooth && !strays(assembly, all, STRAY * room)
 }
 
-/// Whether the equilibrium moves by more than `allowed` (m) along directions that meet no stiffness.
+/// Returns whether the equilibrium moves by more than `allowed` (m) along directions without stiffness.
 fn strays(assembly: &Assembly, [now, _, second]: [&Equilibrium; 3], allowed: f64) -> bool {
     let Determinacy::Indeterminate { free_directions } = &now.determinacy else { return false };
-    // In the unknowns of the search: bodies that are not held, tilts times their bearing's pitch radius.
+    // Unknowns of the search: free bodies, tilts times their bearing's pitch radius.
     let unknowns = assembly.bodies.iter().enumerate().filter(|(_, body)| !is_held(body));
     let moved: Vec<f64> = unknowns
         .flat_map(|(body, _)| {

@@ -1,11 +1,9 @@
-//! ROS34PW2, a linearly implicit Runge–Kutta method of four stages (Rang and Angermann, BIT 45,
-//! 2005): third order with any matrix in place of the Jacobian, stiffly accurate and L-stable with
-//! the true one, second order embedded.
+//! ROS34PW2, a linearly implicit Runge–Kutta method of four stages (Rang and Angermann, BIT 45, 2005): third order with
+//! any matrix instead of the Jacobian, stiffly accurate and L-stable with the exact one, second order embedded.
 //!
-//! Sliding dies out within 1e-7 s in a rolling contact, a hundred times faster than anything else
-//! moves, and binds an explicit step. Here contacts and traction are implicit through
-//! [`Linearised`], one matrix a step; balls are described in [`OrbitFrames`], the turns of bodies in
-//! [`TurningFrames`].
+//! Sliding in a rolling contact decays within 1e-7 s, a hundred times faster than any other motion, and limits explicit
+//! steps. Here contacts and traction are implicit through [`Linearised`], one matrix a step; balls are described in
+//! [`OrbitFrames`], rotations of bodies in [`TurningFrames`].
 
 use crate::assembly::state::Ledger;
 use crate::members::contacts::Want;
@@ -77,7 +75,7 @@ impl Rosenbrock {
         }
     }
 
-    /// What all attempts of a step from `state` at `t` share: the first stage and the contacts.
+    /// Evaluates the first stage and the contacts, common to all attempts of a step from `state` at `t`.
     pub fn begin(&mut self, system: &mut System, t: f64, state: &[f64]) {
         system.evaluate_with(Want::ForcesAndSlopes, t, state, &mut self.first);
         self.linearised.update(system, state);
@@ -87,10 +85,10 @@ impl Rosenbrock {
         self.turning.follow(state);
     }
 
-    /// Goes on from `state`, reached by an accepted step at `t`.
+    /// Continues from `state`, reached by an accepted step at `t`.
     ///
-    /// Losses go with the square of a sliding that the stages know badly and both ends of the step
-    /// well: the ledger takes them by the trapezoidal rule.
+    /// Losses are quadratic in sliding, which both ends of the step resolve better than the stages: the ledger takes
+    /// them by the trapezoidal rule.
     pub fn accept(
         &mut self,
         system: &mut System,
@@ -109,7 +107,7 @@ impl Rosenbrock {
         }
     }
 
-    /// One step from where it began; `state` stays.
+    /// Attempts one step from its beginning; `state` does not change.
     pub fn attempt(
         &mut self,
         system: &mut System,
@@ -158,7 +156,7 @@ impl Rosenbrock {
             turning.turn(after);
             turning.to_inertial(stage);
             system.evaluate(t + after, stage, rates);
-            // Time goes on at rate 1 in every stage.
+            // Time has rate 1 in every stage.
             let going = 1.0 + GAMMAS[i].iter().sum::<f64>() / GAMMA;
             for (frames, set) in frames.iter().zip(&system.sets) {
                 frames.rates_to_frame(&set.layout, stage, rates);

@@ -1,4 +1,4 @@
-//! A simulation: state, time, step after step, watched.
+//! A simulation: the state, its integration in time, and the checks of each step.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::plan::{Stage, motion};
@@ -21,7 +21,7 @@ use crate::motion::system::System;
 pub use crate::motion::energy_ledger::Snapshot;
 pub use crate::motion::error::SimulationError;
 
-/// Where a simulation starts.
+/// Start of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// Static equilibrium under the loads at t = 0, balls and cage rolling.
@@ -30,31 +30,30 @@ pub enum Start {
     Nominal,
 }
 
-/// How a step is chosen.
+/// Choice of the step size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stepping {
-    /// As given, s.
+    /// Fixed step, s.
     Fixed(f64),
-    /// This fraction of the stability limit of Runge–Kutta at the start, and again where the limit
-    /// has come down to the step.
+    /// This fraction of the stability limit of Runge–Kutta at the start, chosen again when the limit falls to the step.
     FractionOfLimit(f64),
-    /// As long as keeps the error of the races' motion below this part of the largest overlap.
+    /// Error control: the error of the races' motion stays below this fraction of the largest overlap.
     Accuracy(f64),
 }
 
-/// What moves the state on.
+/// Integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
-    /// Classical fourth-order Runge–Kutta, as in the source; steps as given.
+    /// Classical fourth-order Runge–Kutta, as in the source; without error control.
     RungeKutta,
-    /// Explicit, of fifth order with error estimate: for bearings without stiff traction.
+    /// Explicit, fifth order with error estimate: for bearings without stiff traction.
     DormandPrince,
-    /// Linearly implicit, of third order with error estimate: contacts and traction bind no step.
+    /// Linearly implicit, third order with error estimate: neither contacts nor traction limit the step.
     Rosenbrock,
 }
 
 impl Integrator {
-    /// As scenes and results call it.
+    /// Name in scenes and results.
     pub fn name(self) -> &'static str {
         match self {
             Integrator::RungeKutta => "rk4",
@@ -64,8 +63,7 @@ impl Integrator {
     }
 }
 
-/// Error control gives up below this step, s; a thousandth of a period of the stiffest contact is
-/// a million times longer.
+/// Error control fails below this step, s: a millionth of a thousandth of a period of the stiffest contact.
 const SHORTEST_STEP: f64 = 1e-14;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,9 +72,9 @@ pub struct RunOptions {
     pub integrator: Integrator,
     pub stepping: Stepping,
     pub driver: Kernel,
-    /// Energy that may go missing, as a fraction of the energy that has been turned over (largest
-    /// contact energy plus all work and losses; with error control also the kinetic energy, and what
-    /// went into contacts and out again from one look to the next).
+    /// Largest energy residual, as a fraction of the energy turned over: largest contact energy plus all work and
+    /// losses; with error control also the kinetic energy and the energy exchanged with the contacts between two
+    /// checks.
     pub energy_limit: f64,
 }
 
@@ -92,22 +90,22 @@ impl Default for RunOptions {
     }
 }
 
-/// A simulation under way.
+/// A simulation at the present time.
 pub struct Simulation {
     pub system: System,
     pub state: Vec<f64>,
     pub time: f64,
-    /// Of the next step, s.
+    /// Size of the next step, s.
     pub step_size: f64,
     pub steps: u64,
-    /// What limits a step that follows from it, at the start or where it was last shortened.
+    /// Stability limit at the start, or when the step was last shortened; `None` if the step does not follow from it.
     pub limit: Option<StepLimit>,
-    /// How the step compares with what the contacts allow since.
+    /// Contact stiffness since then.
     pub step_watch: StepWatch,
-    /// Of each bearing, over every state that a step has led to, as far as it has been evaluated: of Runge–Kutta's that is
-    /// the one before the last step, unless a snapshot was taken.
+    /// Extremes of each bearing over the evaluated states: for Runge–Kutta the last step is missing unless a snapshot
+    /// was taken.
     pub extremes: Vec<Extremes>,
-    /// With error control only.
+    /// `None` without error control.
     pub control: Option<Controller>,
     pub(crate) options: RunOptions,
     integrator: Stepper,
@@ -123,7 +121,8 @@ enum Stepper {
 }
 
 /// # Errors
-/// Steps that the integrator cannot choose.
+///
+/// A choice of step that the integrator does not offer.
 fn controller(
     assembly: &Assembly,
     options: &RunOptions,
@@ -149,8 +148,8 @@ fn controller(
     }
 }
 
-/// Tries `step` and, with error control, shorter ones until one is good enough. Returns its size
-/// and the size for the next.
+/// Tries `step` and, with error control, shorter ones until the error is accepted. Returns its size and the size of the
+/// next step.
 fn accepted(
     system: &mut System,
     control: Option<&mut Controller>,
@@ -175,7 +174,7 @@ fn accepted(
         system.work.rejected_steps += 1;
         was_rejected = true;
         let shorter = control.shorter(step, norm);
-        // Time no longer moves on.
+        // Time would not advance.
         if t + 1e-3 * shorter == t || shorter < SHORTEST_STEP {
             return Err(SimulationError::StepVanished {
                 time: t,
@@ -188,7 +187,7 @@ fn accepted(
     }
 }
 
-/// Every bearing's extremes take note of a state that has been evaluated.
+/// Records the evaluated state in the extremes of each bearing.
 fn see(extremes: &mut [Extremes], system: &System, time: f64) {
     for (index, extremes) in extremes.iter_mut().enumerate() {
         extremes.record(system, index, time);
@@ -197,7 +196,8 @@ fn see(extremes: &mut [Extremes], system: &System, time: f64) {
 
 impl Simulation {
     /// # Errors
-    /// No equilibrium to start from, no step, or a start that has no meaning (see [`crate::motion::validity`]).
+    ///
+    /// No equilibrium at the start, an invalid step, or an invalid start (see [`crate::motion::validity`]).
     pub fn new(
         assembly: impl Into<Assembly>,
         options: RunOptions,
@@ -217,10 +217,11 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Goes on from a state vector at a time, without a change to any bit of it; the energy is
-    /// balanced from here on.
+    /// Continues from a state vector at a time, with the same bits; the energy balance starts here.
     ///
     /// # Errors
+    ///
+    /// An invalid step.
     /// No step.
     pub fn from_state(
         assembly: impl Into<Assembly>,
@@ -245,7 +246,7 @@ impl Simulation {
                 let limit = step_limit(&mut system, time, &state).ok_or(SimulationError::NoStep)?;
                 (fraction * limit.step, Some(limit))
             }
-            // From the overlaps, below.
+            // The overlaps set it, below.
             Stepping::Accuracy(_) => (1.0, None),
         };
         if !(step_size > 0.0 && step_size.is_finite()) {
@@ -289,12 +290,12 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// How it was asked to step.
+    /// Options of the run.
     pub fn options(&self) -> &RunOptions {
         &self.options
     }
 
-    /// First stage at the present state, history included, for the integrators that keep it.
+    /// Evaluates the first stage at the present state, history included, for integrators that keep it.
     pub(crate) fn take_first_rates(&mut self) {
         match &mut self.integrator {
             Stepper::RungeKutta(_) => {}
@@ -308,12 +309,12 @@ impl Simulation {
         }
     }
 
-    /// A body at the present time.
+    /// State of a body at the present time.
     pub fn body(&self, index: usize) -> BodyState {
         self.system.body_state(&self.state, index)
     }
 
-    /// Lets something outside push bodies from now on; its work goes with that of foundations.
+    /// Sets the external loads on bodies for the steps to come; their work counts as that of foundations.
     pub fn set_outside_loads(&mut self, loads: &[(usize, Wrench)]) {
         for (body, load) in loads {
             self.system.outside[*body] = Some(*load);
@@ -321,20 +322,21 @@ impl Simulation {
         self.take_first_rates();
     }
 
-    /// One step; checks what can be checked cheaply.
+    /// Takes one step.
     ///
     /// # Errors
-    /// A value that is not finite, or a state that has lost its meaning (see [`crate::motion::validity`]): the state
-    /// is that after the step.
+    ///
+    /// A non-finite value or an invalid state (see [`crate::motion::validity`]); the state is that after the step.
     pub fn step(&mut self) -> Result<(), SimulationError> {
         self.step_by(self.step_size).map(|_| ())
     }
 
-    /// One step of a given size, as for the last one before an output; with error control one that
-    /// may be shorter. Returns its size.
+    /// Takes one step of at most a given size, as before an output; exactly that size without error control. Returns
+    /// its size.
     ///
     /// # Errors
-    /// As [`Simulation::step`].
+    ///
+    /// See [`Simulation::step`].
     pub fn step_by(&mut self, step: f64) -> Result<f64, SimulationError> {
         let step = match self.control {
             Some(_) => step.min(self.system.longest_past_dents(&self.state)),
@@ -361,7 +363,7 @@ impl Simulation {
                 self.step_size = next.unwrap_or(self.step_size);
                 integrator.accept();
                 std::mem::swap(state, &mut attempt.state);
-                // The last stage is the step itself.
+                // The last stage is the new state.
                 see(extremes, system, t + taken);
                 balanced = balance.check((system, state), options, t + taken, self.steps);
                 taken
@@ -389,9 +391,8 @@ impl Simulation {
         Ok(taken)
     }
 
-    /// Takes the state across a `corner`, which is the present time: where given motions have it,
-    /// velocities jump to what they are after it. The drives do the work of the jump, an impulse
-    /// that the contacts do not feel.
+    /// Takes the state across a `corner` at the present time: velocities of prescribed motions jump to their values
+    /// after it. The drives do the work of the jump, an impulse that the contacts do not feel.
     pub fn cross_corner(&mut self, corner: f64) {
         let Simulation { system, state, rates, time, .. } = self;
         if !system.assembly.jolts_at(corner) {
@@ -412,7 +413,7 @@ impl Simulation {
         self.take_first_rates();
     }
 
-    /// Loads, energies and ledger at the present state.
+    /// Loads, energies and ledger at the present time.
     pub fn snapshot(&mut self) -> Snapshot {
         self.system.evaluate(self.time, &self.state, &mut self.rates);
         see(&mut self.extremes, &self.system, self.time);
@@ -424,15 +425,16 @@ impl Simulation {
         &self.rates
     }
 
-    /// Largest energy unaccounted for at any look, J.
+    /// Largest energy residual at any check, J.
     pub fn largest_residual(&self) -> f64 {
         self.balance.watch.largest_residual
     }
 
-    /// Whether the energy of a run that is over has added up, where it was too short for the looks at it to tell.
+    /// Checks the energy balance at the end of a run that is too short for the checks within it.
     ///
     /// # Errors
-    /// More energy unaccounted for than the options allow.
+    ///
+    /// An energy residual beyond the limit in the options.
     pub fn close(&self, last: &Snapshot) -> Result<(), SimulationError> {
         self.balance.at_end(last, &self.options, self.steps)
     }

@@ -1,4 +1,4 @@
-//! The step that Runge–Kutta can take: from the Jacobian's eigenvalues at a state.
+//! Largest stable step of Runge–Kutta, from the eigenvalues of the Jacobian at a state.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::state::{
@@ -8,14 +8,14 @@ use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::motion::system::System;
 use nalgebra::{Complex, DMatrix, DVector, Quaternion, Schur};
 
-/// Where the step of an explicit method ends.
+/// Stability limit of an explicit method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepLimit {
     /// Largest stable step of classical Runge–Kutta, s.
     pub step: f64,
-    /// The eigenvalue that sets it, 1/s.
+    /// The eigenvalue that limits it, 1/s.
     pub eigenvalue: Complex<f64>,
-    /// State entry of the rate that has most kinetic energy in its mode.
+    /// State entry of the rate with most kinetic energy in the mode of that eigenvalue.
     pub component: Option<usize>,
 }
 
@@ -24,7 +24,7 @@ impl StepLimit {
         eigenvalue.re.abs() > eigenvalue.im.abs()
     }
 
-    /// How fast the limiting mode is, and what moves most in it.
+    /// The rate of the limiting mode, and its largest component.
     pub fn reason(&self, assembly: &Assembly) -> String {
         let (re, im) = (self.eigenvalue.re, self.eigenvalue.im);
         let rate = match StepLimit::decays(self.eigenvalue) {
@@ -38,7 +38,7 @@ impl StepLimit {
     }
 }
 
-/// Name of the coordinate whose rate is an entry of the state, and its mass, moment of inertia or (of modes) one.
+/// Name of the coordinate of a rate in the state, and its mass, moment of inertia or (for modes) one.
 fn coordinate(assembly: &Assembly, entry: usize) -> Option<(String, f64)> {
     let rigid = |at: &dyn Fn(usize) -> usize, inertia: &Inertia, name: &dyn Fn() -> String| {
         (0..3).find_map(|i| {
@@ -85,7 +85,7 @@ pub fn growth(z: Complex<f64>) -> f64 {
     (one + z * (one + z / 2.0 * (one + z / 3.0 * (one + z / 4.0)))).norm()
 }
 
-/// One direction in which a state may be moved.
+/// A direction in which a state is perturbed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Direction {
     /// An entry of the state vector that is a position (m).
@@ -99,8 +99,7 @@ enum Direction {
 impl Direction {
     fn step(self, state: &[f64], ball_radius: f64) -> f64 {
         match self {
-            // Far below an overlap of 1 µm, at the races' radius too, and a creep of 1e-5 of the
-            // rolling speed.
+            // Far below an overlap of 1 µm, at the races' radius too, and a slip of 1e-5 of the rolling speed.
             Direction::Position(_) => 1e-10,
             Direction::Turn { .. } => 1e-9,
             Direction::Rate(entry) => 1e-7 * state[entry].abs().max(ball_radius),
@@ -122,7 +121,7 @@ impl Direction {
         }
     }
 
-    /// How fast the rates move the state in this direction.
+    /// Rate of the state in this direction.
     fn rate(self, state: &[f64], rates: &[f64]) -> f64 {
         match self {
             Direction::Position(entry) | Direction::Rate(entry) => rates[entry],
@@ -138,8 +137,8 @@ impl Direction {
     }
 }
 
-/// Jacobian of the rates by central differences, over the directions that matter: the orientation
-/// of a ball and the energy ledger do not feed back on the motion, padding does not move.
+/// Jacobian of the rates by central differences, without the orientation of balls, the energy ledger and padding, which
+/// do not feed back.
 pub fn jacobian(system: &mut System, t: f64, state: &[f64]) -> DMatrix<f64> {
     let directions = directions(system);
     let mut rates = vec![0.0; state.len()];
@@ -147,7 +146,7 @@ pub fn jacobian(system: &mut System, t: f64, state: &[f64]) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(directions.len(), directions.len());
     let radii = system.assembly.bearings.iter().map(|bearing| bearing.geometry.ball_radius);
     let radius = Some(radii.fold(f64::INFINITY, f64::min)).filter(|radius| radius.is_finite());
-    // Of bodies on springs alone some length serves as well.
+    // Any length serves for bodies on springs alone.
     let radius = radius.unwrap_or(1e-2);
     for (column, direction) in directions.iter().enumerate() {
         let step = direction.step(state, radius);
@@ -205,7 +204,7 @@ fn directions(system: &System) -> Vec<Direction> {
     directions
 }
 
-/// Largest stable step at a state; `None` where nothing is stiff (no contact at all).
+/// Largest stable step at a state; `None` without any contact.
 pub fn step_limit(system: &mut System, t: f64, state: &[f64]) -> Option<StepLimit> {
     let matrix = jacobian(system, t, state);
     let (step, eigenvalue) = limiting(&matrix)?;
@@ -219,7 +218,7 @@ fn largest_component(
     matrix: &DMatrix<f64>,
     eigenvalue: Complex<f64>,
 ) -> Option<usize> {
-    // Close by, so that the matrix is not singular.
+    // Next to the eigenvalue, so that the matrix is not singular.
     let near = eigenvalue * (1.0 + 1e-6);
     let mut shifted = matrix.map(|value| Complex::new(value, 0.0));
     for i in 0..matrix.nrows() {
@@ -242,28 +241,28 @@ fn largest_component(
     energies.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(entry, _)| entry)
 }
 
-/// The largest stable step and the eigenvalue that sets it.
+/// Largest stable step and the eigenvalue that limits it.
 fn limiting(matrix: &DMatrix<f64>) -> Option<(f64, Complex<f64>)> {
     let eigenvalues = eigenvalues(matrix)?;
     let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
     eigenvalues
         .iter()
-        // Slow modes may grow physically (a pendulum upside down) and set no step.
+        // Slow modes may grow physically (an inverted pendulum) and limit no step.
         .filter(|value| value.norm() > 1e-2 * largest)
         .map(|&eigenvalue| (limit_of(eigenvalue), eigenvalue))
         .filter(|limit| limit.0.is_finite())
         .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Eigenvalues by the QR algorithm, which stalls on some matrices of high symmetry (a preloaded
-/// bearing at rest): then with a small uneven shift of the diagonal, which breaks the tie.
+/// Eigenvalues by the QR algorithm. It stalls on some matrices of high symmetry (a preloaded bearing at rest); a small
+/// uneven shift of the diagonal then breaks the symmetry.
 fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let size = matrix.nrows();
     let scale = matrix.amax();
     for attempt in 0..4 {
         let mut tried = matrix.clone();
         for i in 0..size {
-            // Far below what the finite differences of the Jacobian are good to.
+            // Far below the accuracy of the finite differences.
             tried[(i, i)] += 1e-9 * scale * f64::from(attempt) * i as f64 / size as f64;
         }
         if let Some(schur) = Schur::try_new(tried, f64::EPSILON, 200 * size) {
@@ -273,14 +272,14 @@ fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     None
 }
 
-/// Largest h at which a step grows no faster than the motion itself (|R(hλ)| ≤ e^(h·Re λ) for a
-/// growing one), by a march to the first excess and bisection.
+/// Largest h at which a step grows no faster than the motion itself (|R(hλ)| ≤ e^(h·Re λ) for a growing one), by a
+/// march to the first excess and bisection.
 fn limit_of(eigenvalue: Complex<f64>) -> f64 {
     let size = eigenvalue.norm();
     if size == 0.0 {
         return f64::INFINITY;
     }
-    // Rounding of undamped modes: growth of 1e-6 a step is no instability of the method.
+    // Rounding of undamped modes: a growth of 1e-6 a step is not an instability of the method.
     let own = eigenvalue.re.max(0.0);
     let stable = |h: f64| growth(eigenvalue * h) <= libm::exp(own * h) + 1e-6;
     let mut low = 1e-3 / size;

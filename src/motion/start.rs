@@ -1,4 +1,4 @@
-//! Where a simulation starts: at equilibrium and rolling, or at rest in nominal positions.
+//! Start of a simulation: rolling in equilibrium, or in nominal positions.
 
 use crate::assembly::lists::{Assembly, Bearing};
 use crate::assembly::loads::Drive;
@@ -15,15 +15,16 @@ use crate::motion::rolling_velocity::Rates;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// State vector at equilibrium of all bodies under the loads at t = 0, balls and cages rolling and
-/// all as fast as the equilibrium moves on (see [`rolling_velocity`]); what turns stands still for the
-/// equilibrium itself (see [`at_start`]).
+/// State vector in equilibrium of all bodies under the loads at t = 0, with balls and cages rolling and all velocities
+/// those of the moving equilibrium (see [`rolling_velocity`]). Rotating bodies are at rest for the equilibrium itself
+/// (see [`at_start`]).
 ///
-/// What sits in a solid starts where it rests, the others in equilibrium with it there; solids start as their
-/// `start` says, still.
+/// Bodies in solids start at their rest positions, the others in equilibrium with them; solids start at rest as in
+/// their `start`.
 ///
 /// # Errors
-/// When the loads have no equilibrium at t = 0.
+///
+/// No equilibrium under the loads at t = 0.
 pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
     if !assembly.solids.is_empty() {
         let held = at_equilibrium(&assembly.with_seats_held())?;
@@ -41,8 +42,7 @@ pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
     Ok(fill(assembly, &bodies, Some((&positions, &now.amplitudes)), &rates))
 }
 
-/// State vector with everything in its nominal position, balls and cages rolling at the given
-/// speeds; loads hit it suddenly.
+/// State vector with all bodies in nominal positions, balls and cages rolling at the given speeds; loads act suddenly.
 pub fn nominal(assembly: &Assembly) -> Vec<f64> {
     let place = |body: &crate::assembly::lists::Body| {
         let mut at = body.rest;
@@ -59,7 +59,7 @@ pub fn nominal(assembly: &Assembly) -> Vec<f64> {
     with_solids(assembly, &fill(assembly, &bodies, None, &Rates::rest(assembly)))
 }
 
-/// A state without solids with them put in, the ledger behind.
+/// Inserts solids into a state without them, before the ledger.
 fn with_solids(assembly: &Assembly, state: &[f64]) -> Vec<f64> {
     let places = Places::of(assembly);
     let mut whole = vec![0.0; places.state_len()];
@@ -91,8 +91,7 @@ fn on_pitch_circle(bearing: &Bearing, outer: &BodyKinematics) -> Vec<Vec3> {
 /// Positions of the balls of each bearing, amplitudes of each shaft.
 type Known<'k> = (&'k [Vec<Vec3>], &'k [Vec<f64>]);
 
-/// The state with bodies at these coordinates; balls stand on their pitch circles and shafts are straight where no
-/// positions and amplitudes are given.
+/// The state with bodies at these coordinates; `None`: balls on their pitch circles and straight shafts.
 fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &Rates) -> Vec<f64> {
     let places = Places::of(assembly);
     let mut state = vec![0.0; places.state_len()];
@@ -124,7 +123,7 @@ fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &
         let orbital_speed = orbital_speed(assembly, bearing, 0.0);
         let at_rest = on_pitch_circle(bearing, &outer);
         let positions = known.map_or(&at_rest, |(positions, _)| &positions[index]);
-        // What turns with the outer race's tilts and not about its axis.
+        // Rotation with the tilts of the outer race, not about its axis.
         let axis = outer.motion.axis;
         let [_, outer_speed] = race_speeds(assembly, bearing, 0.0);
         let tilting = if outer_speed == 0.0 {
@@ -157,7 +156,7 @@ fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &
             body.spin = rolling_spin(bearing, [&inner, &outer], outer_speed, &body, outward);
             layout.set_ball(&mut state, ball, &body);
         }
-        // Lanes beyond the last ball hold a ball that stands in the groove and is never looked at.
+        // Lanes beyond the last ball hold a ball in the groove that is never evaluated.
         for ball in layout.balls..layout.padded {
             layout.set_ball(&mut state, ball, &BodyState::at_rest(positions[0]));
         }
@@ -165,16 +164,16 @@ fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &
     state
 }
 
-/// How far along its axis a cage stands from the middle of its bearing (m), where balls stand at these places
-/// along it: nowhere but in the middle as long as all have room there, as they are wide apart then; among the balls
-/// where they have all gone to one side, as in an angular-contact bearing pushed the wrong way.
+/// Position of a cage along its axis from the middle of its bearing (m) for these axial positions of the balls: in the
+/// middle if all balls have room there, otherwise among the balls, as in an angular-contact bearing loaded the wrong
+/// way.
 fn among(balls: &[f64], room: f64) -> f64 {
     let least = balls.iter().copied().fold(f64::INFINITY, f64::min);
     let most = balls.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if most.max(-least) <= room { 0.0 } else { 0.5 * (least + most) }
 }
 
-/// A race at x, y, z, tilt_y, tilt_z, whose coordinates change at `rates`, turning at `speed`.
+/// A race at x, y, z, tilt_y, tilt_z, with these coordinates changing at `rates`, rotating at `speed`.
 fn moving(at: &[f64; 5], rates: &[f64; 5], speed: f64) -> BodyState {
     let now = rigid_body::fixed(at);
     let mut body = now.state;
@@ -186,8 +185,7 @@ fn moving(at: &[f64; 5], rates: &[f64; 5], speed: f64) -> BodyState {
     body
 }
 
-/// Spin that rolls without slip on both races: about the meridian direction across the line from
-/// the outer to the inner contact, as fast as the races' surfaces ask for.
+/// Spin without slip on both races, about the meridian direction across the line from the outer to the inner contact.
 fn rolling_spin(
     bearing: &Bearing,
     [inner, outer]: [&BodyKinematics; 2],
@@ -212,7 +210,7 @@ fn rolling_spin(
     if outer_speed != 0.0 {
         difference -= surface(outer, scale(inner_point, -1.0));
     }
-    // Centre plus spin × arm on either side: half of what the surfaces differ by.
+    // Centre plus spin × arm on either side: half of the difference of the surface velocities.
     let half_difference = 0.5 * difference;
     let per_spin = dot(cross(roll_axis, inner_point), tangent);
     scale(roll_axis, half_difference / per_spin)

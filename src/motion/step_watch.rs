@@ -1,10 +1,9 @@
-//! Whether the step is still short enough: contacts that are pressed harder swing faster, and their
-//! traction and damping decay faster, than at the start.
+//! Watch of the stability limit. Contacts that carry more load oscillate faster, and their traction and damping decay
+//! faster, than at the start.
 //!
-//! A run above its limit need not fail: traction that overshoots swings to and fro in a limit cycle
-//! that keeps its energy. So the contacts are looked at every few steps, which costs next to
-//! nothing, and the Jacobian where they have become so stiff that the limit may have come down to
-//! the step. A step that was given is refused then; one that follows from the limit is shortened.
+//! A run above its limit need not fail: traction that overshoots may end in a limit cycle that conserves energy. So
+//! contact stiffness is compared every few steps, at little cost, and the Jacobian is evaluated when the limit may have
+//! come down to the step. A prescribed step is refused then; one that follows from the limit is shortened.
 
 use crate::assembly::lists::Bearing;
 use crate::assembly::plan::Stage;
@@ -16,27 +15,26 @@ use crate::motion::simulation::{Integrator, Simulation, SimulationError, Steppin
 use crate::motion::stability::step_limit;
 use crate::motion::system::System;
 
-/// Steps from one look at the contacts to the next.
+/// Steps between two checks of the contacts.
 pub const LOOK_EVERY: u64 = 16;
 
-/// How far a given step may lie above the limit before the run is refused: so much is the limit
-/// itself off from the observed one.
+/// Factor by which a prescribed step may exceed the limit: the uncertainty of the limit.
 pub const TOLERATED: f64 = 1.1;
 
-/// With traction the Jacobian is asked after 16, 32, 64 … steps and then every so many, whatever the
-/// contacts say: a start that rolls with spin keeps slip off the steep onset, to which it comes back
-/// within some tenths of a millisecond. That costs some per cent of the steps.
+/// With traction the Jacobian is evaluated after 16, 32, 64 … steps and then at this interval, whatever the contact
+/// stiffness: rolling with spin keeps slip off the steep onset at the start, and reaches it within some tenths of a
+/// millisecond. The cost is some per cent.
 const JUDGE_EVERY: u64 = 4096;
 
-/// A step that follows from the limit is shortened once it is this much above its fraction: at the
-/// limit itself nothing decays any more, and the ledger suffers long before.
+/// A step that follows from the limit is shortened if it exceeds its fraction by this factor: at the limit itself
+/// nothing decays, and the energy balance fails long before.
 const ROOM: f64 = 1.5;
 
-/// Where contacts are damped the limit may come down by this factor more than stiffness and damping
-/// say each: what swings turns into what decays, whose fast root outgrows both.
+/// Additional factor for damped contacts: when an oscillation becomes a decay, its fast root grows more than stiffness
+/// and damping.
 const DAMPED: f64 = 1.5;
 
-/// What the contacts of an evaluation bind the step by.
+/// Rates of the contacts that limit the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stiffness {
     /// Largest contact stiffness over mass, 1/s².
@@ -46,7 +44,7 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// By what factor the limit may have come down since `before`.
+    /// Factor by which the limit may have come down since `before`.
     fn growth(&self, before: &Stiffness) -> f64 {
         let ratio = |now: f64, before: f64| if now > 0.0 { now / before } else { 0.0 };
         let swings = ratio(self.oscillation, before.oscillation).sqrt();
@@ -80,7 +78,7 @@ pub fn stiffness(system: &System) -> Stiffness {
 fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness {
     let radius = set.laws.ball_radius;
     let per_mass = 1.0 / bearing.ball.mass;
-    // A force at the surface moves it by force/mass and by turning the ball.
+    // A force at the surface moves it by translation and by rotation of the ball.
     let at_surface = per_mass + radius * radius / bearing.ball.axial;
     let mut most = Stiffness::default();
     for &pair in &set.table.active {
@@ -126,33 +124,34 @@ fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness 
     most
 }
 
-/// What is known of the limit so far.
+/// Limit found so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepWatch {
-    /// Smallest limit found, s; none where nothing was stiff yet.
+    /// Smallest limit found, s; `None` if nothing was stiff yet.
     pub smallest: Option<f64>,
-    /// Stiffest that the contacts were when it was asked.
+    /// Largest contact rates at an evaluation of the Jacobian.
     pub stiffest: Stiffness,
-    /// Times that a step which follows from the limit was shortened.
+    /// Number of times the step was shortened.
     pub shortened: u64,
 }
 
 impl StepWatch {
-    /// `bound` is the part of the limit that the step must not exceed.
+    /// Returns whether the Jacobian is due. `bound` is the fraction of the limit that the step must not exceed.
     fn is_due(&self, now: &Stiffness, step: f64, bound: f64, damped: bool) -> bool {
         let growth = now.growth(&self.stiffest);
         let margin = if damped { DAMPED } else { 1.0 } / bound;
-        // Two per cent, so that a step close to its limit does not ask again and again.
+        // Two per cent, so that a step close to its limit is not judged again and again.
         growth > 1.02 && self.smallest.is_none_or(|limit| limit < margin * growth * step)
     }
 }
 
 impl Simulation {
-    /// Looks at the contacts of the last evaluation, and at the Jacobian if they ask for it. Returns
-    /// the step to go on with, where the present one follows from the limit and has come above it.
+    /// Compares the contacts of the last evaluation, and evaluates the Jacobian if it is due. Returns the step to
+    /// continue with if one that follows from the limit has exceeded it.
     ///
     /// # Errors
-    /// A given step above the largest stable one.
+    ///
+    /// A prescribed step above the limit.
     pub fn watch_step(&mut self) -> Result<Option<f64>, SimulationError> {
         let now = stiffness(&self.system);
         let sets = &self.system.sets;
@@ -164,7 +163,7 @@ impl Simulation {
         if due { self.judge_step(now) } else { Ok(None) }
     }
 
-    /// The part of the limit that the step must not exceed.
+    /// Fraction of the limit that the step must not exceed.
     fn bound(&self) -> f64 {
         match self.options.stepping {
             Stepping::FractionOfLimit(fraction) => (ROOM * fraction).min(1.0),
@@ -172,16 +171,17 @@ impl Simulation {
         }
     }
 
-    /// Goes on with a shorter step.
+    /// Continues with a shorter step.
     pub fn shorten_step(&mut self, step: f64) {
         self.step_watch.shortened += 1;
         self.step_size = step;
     }
 
-    /// Compares the step with the limit at the present state, whatever the contacts say.
+    /// Compares the step with the limit at the present state.
     ///
     /// # Errors
-    /// A given step above the largest stable one.
+    ///
+    /// A prescribed step above the limit.
     pub fn judge_step_now(&mut self) -> Result<Option<f64>, SimulationError> {
         self.system.evaluate(self.time, &self.state, &mut self.rates);
         self.judge_step(stiffness(&self.system))
@@ -192,7 +192,7 @@ impl Simulation {
         if self.options.integrator != Integrator::RungeKutta {
             return Ok(None);
         }
-        // The Jacobian's evaluations are not those of the steps: they are counted as judgements.
+        // Evaluations for the Jacobian are counted as judgements, not as those of steps.
         let (work, ran) = (self.system.work, self.system.ran.clone());
         let limit = step_limit(&mut self.system, self.time, &self.state);
         (self.system.work, self.system.ran) = (work, ran);

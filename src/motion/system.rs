@@ -25,34 +25,33 @@ use crate::members::section_attachments::{
 };
 use crate::members::unbalance::UnbalanceCoupling;
 
-/// An assembly with everything precomputed and room to work in.
+/// An assembly with its constants and working memory.
 pub struct System {
     pub assembly: Assembly,
     pub places: Places,
-    /// One for each bearing.
+    /// Ball set of each bearing.
     pub sets: Vec<BallSet>,
-    /// One for each seat.
+    /// Contact of each housing fit.
     pub seats: Vec<SeatNow>,
     /// First entry of each reduced solid in the state.
     pub solids: Vec<usize>,
     /// First entry of each connection's Maxwell elements in the state.
     pub connections: Vec<usize>,
-    /// First entry of each shaft that bends, and what takes hold of them.
+    /// First entry of each flexible shaft in the state, and the attachments on it.
     pub shafts: Vec<usize>,
     pub holds: SectionAttachments,
-    /// Every body as last evaluated.
+    /// Kinematics of each body as last evaluated.
     pub bodies: Vec<BodyKinematics>,
-    /// What something outside does to a body, about its centre; stays as it is within a step.
+    /// External wrench on each body about its centre, N and N·m. Constant within a step.
     pub outside: Vec<Option<Wrench>>,
     pub driver: Kernel,
     pub work: Work,
-    /// Items of one evaluation; those that say *does* are what is run.
+    /// Plan items of one evaluation; those that say *does* are run.
     pub plan: Vec<Item>,
     pub(crate) steps: Steps,
-    /// How often each stage has run.
+    /// Number of runs of each stage.
     pub ran: StageCounts,
-    /// Profiles are read no later than this, s: in a step that ends at a corner, just before it, so
-    /// that no stage sees what comes after. Infinite otherwise.
+    /// Latest time at which profiles are read, s: just before the corner at which a step ends, infinite otherwise.
     pub latest: f64,
     pub(crate) loads: Vec<Wrench>,
     pub(crate) swing: UnbalanceCoupling,
@@ -63,7 +62,7 @@ impl System {
         let assembly = assembly.into();
         let plan = motion::evaluation(&assembly, &[]);
         let steps = Steps::new(&plan, &assembly);
-        // Until the first evaluation all stand where their springs are at rest.
+        // Rest positions of the springs until the first evaluation.
         let bodies: Vec<BodyKinematics> =
             assembly.bodies.iter().map(|body| rigid_body::fixed(&body.rest)).collect();
         let sets = assembly
@@ -107,7 +106,7 @@ impl System {
         BodyState::from_slice(&state[at..at + BODY])
     }
 
-    /// Takes all bodies to where they are at time `t`, given motions imposed.
+    /// Updates all bodies to time `t`, with prescribed motions.
     fn place(&mut self, t: f64, state: &[f64]) {
         let t = t.min(self.latest);
         for &index in &self.steps.moving {
@@ -122,7 +121,7 @@ impl System {
         }
     }
 
-    /// What a connection does in a state; call after [`System::evaluate`] at the same state.
+    /// Forces of a connection; call after [`System::evaluate`] at the same state.
     pub fn pull(&self, state: &[f64], connection: usize) -> SpringForces {
         let (at, ends) = (self.connections[connection], self.ends(connection));
         let connection = &self.assembly.connections[connection];
@@ -135,7 +134,7 @@ impl System {
         self.assembly.connections[connection].extension(self.ends(connection).each_ref())
     }
 
-    /// Both ends of a connection as evaluated last.
+    /// Kinematics of both ends of a connection as last evaluated.
     fn ends(&self, connection: usize) -> [BodyKinematics; 2] {
         let holds = &self.holds.connections[connection];
         let ends = &self.assembly.connections[connection].ends;
@@ -144,12 +143,12 @@ impl System {
         })
     }
 
-    /// Rates of the whole state vector at time `t`.
+    /// Rates of the state vector at time `t`.
     pub fn evaluate(&mut self, t: f64, state: &[f64], rates: &mut [f64]) {
         self.evaluate_with(Want::Forces, t, state, rates);
     }
 
-    /// As [`System::evaluate`], with the slopes of traction if they are wanted.
+    /// As [`System::evaluate`], with the slopes of traction if requested.
     pub fn evaluate_with(&mut self, want: Want, t: f64, state: &[f64], rates: &mut [f64]) {
         self.work.evaluations += 1;
         self.place(t, state);
@@ -207,7 +206,7 @@ impl System {
         self.ran.whole.add(Stage::Ledger, 1);
     }
 
-    /// Rates of the shafts that bend, without what holds them.
+    /// Rates of the flexible shafts without the forces of their attachments.
     fn shaft_rates(
         &mut self,
         t: f64,
@@ -234,7 +233,7 @@ impl System {
         }
     }
 
-    /// Rates of the reduced solids; what their seats do to bodies is summed.
+    /// Rates of the reduced solids; sums the forces of their housing fits on bodies.
     fn solid_rates(
         &mut self,
         t: f64,
@@ -268,32 +267,32 @@ impl System {
             let sits = (&race, body);
             let loads = wrench_on_body((hold, &seat.race), sits, &loads, bent, rates);
             self.loads[seat.race.body].add(&loads);
-            // What lets the race grow works against the contact.
+            // Growth of the race does work against the contact.
             ledger[Ledger::Drives as usize] += now.contact.radial_load * seat.radius.rate(t);
             self.ran.seats[index].add(Stage::Seat, 1);
         }
     }
 
-    /// How far the shapes of a reduced solid have gone (m), and how fast (m/s).
+    /// Modal coordinates of a reduced solid (m) and their rates (m/s).
     pub fn shapes_of<'s>(&self, state: &'s [f64], solid: usize) -> (&'s [f64], &'s [f64]) {
         let (at, count) = (self.solids[solid], self.assembly.solids[solid].count());
         state[at..at + 2 * count].split_at(count)
     }
 
-    /// Entries of a shaft that bends.
+    /// Entries of a flexible shaft.
     pub fn bent<'s>(&self, state: &'s [f64], shaft: usize) -> &'s [f64] {
         let at = self.shafts[shaft];
         &state[at..at + self.assembly.shafts[shaft].entries()]
     }
 
-    /// A race of a bearing in a state, whatever was evaluated last; given motions are not imposed.
+    /// Kinematics of a race of a bearing in a state, whatever was evaluated last; prescribed motions are not imposed.
     pub fn race_of(&self, state: &[f64], bearing: usize, side: usize) -> BodyKinematics {
         let mount = &self.assembly.bearings[bearing].mounts[side];
         let body = BodyKinematics::new(self.body_state(state, mount.body));
         self.on_body(&self.holds.bearings[bearing][side], state, &body, mount)
     }
 
-    /// The motion of [`System::race_of`] without what follows from it.
+    /// Motion of [`System::race_of`] without derived quantities.
     pub(crate) fn race_motion(&self, state: &[f64], bearing: usize, side: usize) -> AxisMotion {
         let mount = &self.assembly.bearings[bearing].mounts[side];
         if self.holds.bearings[bearing][side].is_none() && mount.is_direct() {
@@ -302,7 +301,7 @@ impl System {
         self.race_of(state, bearing, side).motion
     }
 
-    /// What sits at a mount of a body, bent as a state has it.
+    /// Kinematics of an attachment on a body, with the bending of a state.
     pub fn on_body(
         &self,
         hold: &Option<SectionAttachment>,
@@ -320,14 +319,14 @@ impl System {
         }
     }
 
-    /// A section of a shaft that bends, where a state has it; given motions are not imposed.
+    /// Kinematics of a section of a flexible shaft in a state; prescribed motions are not imposed.
     pub fn section_now(&self, state: &[f64], shaft: usize, section: &Section) -> BodyKinematics {
         let (of, at) = (&self.assembly.shafts[shaft], self.shafts[shaft]);
         let now = BodyKinematics::new(self.body_state(state, of.body));
         section.place(&now, &Mount::at_centre(of.body), &of.bend(at, state)).race
     }
 
-    /// Acceleration of a body's centre (m/s²) and of its angular velocity (rad/s²), inertial axes, out of the rates.
+    /// Acceleration of a body's centre (m/s²) and its angular acceleration (rad/s²), inertial axes, from the rates.
     pub fn acceleration_of(&self, rates: &[f64], body: usize) -> [Vec3; 2] {
         let at = self.places.body(body);
         [VELOCITY, SPIN].map(|part| [0, 1, 2].map(|i| rates[at + part + i]))
@@ -339,7 +338,7 @@ impl System {
         self.assembly.solids[solid].energy(gone, speeds)
     }
 
-    /// Writes prescribed positions and rates into the state, and makes quaternions unit again.
+    /// Writes prescribed positions and rates into the state, and normalises quaternions.
     pub fn tidy(&self, t: f64, state: &mut [f64]) {
         let t = t.min(self.latest);
         for &index in &self.steps.moving {
@@ -362,7 +361,7 @@ impl System {
         }
     }
 
-    /// The longest step, s, in which no ball goes by a dent unseen; a bearing without dents has none.
+    /// Longest step, s, in which every ball meets every dent on its path; infinite without dents.
     pub(crate) fn longest_past_dents(&self, state: &[f64]) -> f64 {
         let dented = self.sets.iter().filter(|set| set.steps.dents);
         dented.fold(f64::INFINITY, |least, set| least.min(dents::longest_step(set, state)))

@@ -1,9 +1,9 @@
-//! Frames that turn with each body within a step.
+//! Frames that rotate with each body within a step.
 //!
-//! A polynomial in time follows a turn ωh with an error of (ωh)³: at some ten thousand revolutions a minute that, and
-//! nothing a bearing does, would say how long a step may be. The quaternion is q = r p in place of it, r the turn at the
-//! angular velocity Ω that the body has where the step begins: ṗ = r*(q̇ − ½ Ω q), nothing where it goes on turning so.
-//! Ω is constant within a step, so that any method keeps its order.
+//! A polynomial in time follows a rotation ωh with an error of (ωh)³, which at some ten thousand revolutions per minute
+//! would limit the step. The quaternion is q = r p instead, r the rotation at the angular velocity Ω of the body at the
+//! beginning of the step: ṗ = r*(q̇ − ½ Ω q), zero for a steady rotation. Ω is constant within a step, so that any
+//! method keeps its order.
 
 use crate::assembly::state::{ORIENTATION, Places, SPIN, quaternion_rate};
 use crate::kinematics::vec3::{Vec3, dot, scale};
@@ -20,7 +20,7 @@ struct Frame {
     /// First entry of the body.
     body: usize,
     spin: Vec3,
-    /// The turn when [`TurningFrames::turn`] was last called.
+    /// Rotation at the last call of [`TurningFrames::turn`].
     turned: Quaternion<f64>,
 }
 
@@ -34,7 +34,7 @@ impl TurningFrames {
         TurningFrames { frames: bodies.map(frame).collect() }
     }
 
-    /// Takes the angular velocities of the bodies; the frames lie along inertial axes.
+    /// Sets the angular velocities to those of the bodies; the frames are along inertial axes.
     pub fn follow(&mut self, state: &[f64]) {
         for frame in &mut self.frames {
             frame.spin = [0, 1, 2].map(|i| state[frame.body + SPIN + i]);
@@ -42,7 +42,7 @@ impl TurningFrames {
         }
     }
 
-    /// Turns the frames to where they are `time` after the step began.
+    /// Rotates the frames by `time` from the beginning of the step.
     pub fn turn(&mut self, time: f64) {
         for frame in &mut self.frames {
             let spin = dot(frame.spin, frame.spin).sqrt();
@@ -52,7 +52,7 @@ impl TurningFrames {
         }
     }
 
-    /// Writes `time` times the rates at which the frames turn the quaternions of `state` to the places of these (see
+    /// Writes `time` times the rates of the quaternions of `state` due to the frames' rotation (see
     /// [`crate::motion::orbit_frame::OrbitFrames::drift`]).
     pub fn drift(&self, time: f64, state: &[f64], to: &mut [f64]) {
         for frame in &self.frames {
@@ -62,7 +62,7 @@ impl TurningFrames {
         }
     }
 
-    /// Quaternions of `state` from the frames as they are turned to inertial axes.
+    /// Transforms quaternions of `state` from the rotated frames to inertial axes.
     pub fn to_inertial(&self, state: &mut [f64]) {
         for frame in &self.frames {
             let at = frame.body + ORIENTATION;
@@ -71,7 +71,7 @@ impl TurningFrames {
         }
     }
 
-    /// Rates in inertial axes at `state` in inertial axes to those of the frames' quaternions.
+    /// Transforms rates at `state`, both in inertial axes, to those of the frames' quaternions.
     pub fn rates_to_frame(&self, state: &[f64], rates: &mut [f64]) {
         for frame in &self.frames {
             let at = frame.body + ORIENTATION;

@@ -1,5 +1,5 @@
-//! Where a state has lost its meaning: values that are not finite, balls outside their races, a race
-//! or a cage that has left its bearing, a bearing that has flown off, springs beyond their reach, parts inside each other. Looked at at the start and once a step.
+//! Validity of a state: finite values, balls between their races, races and cages in their bearings, springs within
+//! their range, parts that do not interpenetrate. Checked at the start and after each step.
 
 use crate::assembly::lists::{Bearing, Caged};
 use crate::assembly::loads::Drive;
@@ -17,56 +17,57 @@ use crate::motion::simulation::Simulation;
 use crate::numeric::clock::to_digits;
 use std::f64::consts::PI;
 
-/// How deep parts may lie in each other, in ball radii. Pressure in a Hertz contact of balls follows
-/// from δ/r alone: steel on steel would carry 20 GPa at this depth, five times what leaves a dent (ISO 76),
-/// on a contact a fifth of the ball wide, so that neither elasticity nor Hertz's half-space holds.
-/// The cage's contacts, whose stiffness is a choice, are held to the same depth.
+/// Largest interpenetration, in ball radii. The pressure of a Hertz contact of balls depends on δ/r alone. At this
+/// depth steel on steel would carry 20 GPa, five times the limit of permanent deformation (ISO 76), on a contact a
+/// fifth of the ball wide: neither elasticity nor the half-space holds. Cage contacts, whose stiffness is a choice,
+/// have the same limit.
 pub const HERTZ_SCALE: f64 = 0.1;
 
-/// How far a race may be from where it lies nominally (m), along its axis and across it: what the
-/// grooves leave free, and a ball's radius besides. Before that the rings of a real bearing have run into each
-/// other (shoulders of usual height leave 1.2 ball radii between them), or the balls are out of
-/// their grooves.
+/// Largest displacement of a race from its nominal position (m), along and across its axis: the free play in the
+/// grooves plus a ball radius. Beyond it the rings of a real bearing have met (usual shoulders leave 1.2 ball radii
+/// between them), or the balls have left their grooves.
 pub fn race_limit(geometry: &BearingGeometry) -> f64 {
     let grooves = geometry.inner.groove_radius + geometry.outer.groove_radius;
     let play = grooves - 2.0 * geometry.ball_radius + geometry.radial_clearance.max(0.0);
     geometry.ball_radius + play
 }
 
-/// How far the centre of a cage may be from the axis of its outer race (m): until its ring is in the
-/// bottom of the groove, or its guiding surface in the race that guides it, by the depth that contacts may
-/// have. Along the axis, around it and against tilts the pockets hold it.
+/// Largest displacement of a cage's centre from the axis of its outer race (m): its ring meets the bottom of the
+/// groove, or its guiding surface the guiding race, at the largest contact depth. Pockets limit it in the other
+/// directions.
 pub fn cage_room(geometry: &BearingGeometry, cage: &CageContacts) -> f64 {
     let bottom = geometry.outer.centre_radius + geometry.outer.groove_radius;
     let ring = (bottom - cage.ring[1]).max(0.0);
     let room = match cage.guidance {
         Guidance::OuterRace => cage.race_clearance.min(ring),
-        // The inner race may itself be off.
+        // The inner race may be displaced too.
         Guidance::InnerRace | Guidance::Balls => ring,
     };
     room + HERTZ_SCALE * geometry.ball_radius
 }
 
-/// How far a bearing may go from where its outer race stands at rest, m: soft springs give way by millimetres,
-/// nothing that holds gives way by a metre.
+/// Largest displacement of a bearing from the rest position of its outer race, m. Soft springs deflect by millimetres,
+/// nothing sound by a metre.
 pub const FARTHEST: f64 = 1.0;
 
-/// How far the middle of a race may go across its bore, in its radii.
+/// Largest displacement of a race across its bore, in radii of the race.
 const FARTHEST_IN_BORE: f64 = 0.1;
 
-/// How far a race may tilt in its bore, rad. At each end of a seat half as wide as its radius that is a fortieth of the
-/// radius, a hundred times what contact and shapes give way by, and by then a linear shape is wrong by θ²/2, 0.5 % of the
-/// radius: as much. A seat of nodes holds tilts to thousandths.
+/// Largest tilt of a race in its bore, rad. At the ends of a race half as wide as its radius that is a fortieth of the
+/// radius, a hundred times the deflection of contact and modes; linear modes are wrong by θ²/2, 0.5 % of the radius.
+/// Contact nodes limit tilts to thousandths.
 const FARTHEST_TILT: f64 = 0.1;
 
-/// How far a section may turn against its body, rad: bending is of first order in turns but where it shortens, and by then it is
-/// wrong by θ²/2, half a percent.
+/// Largest rotation of a section relative to its body, rad: bending is linear in rotations except for shortening, an
+/// error of θ²/2, half a percent.
 pub const FARTHEST_BENT: f64 = 0.1;
 
-/// How far the springs of a connection know turns, rad: up to half a turn either way, beyond which a wound spring would jump to the other side.
+/// Largest rotation measured by the springs of a connection, rad: beyond half a turn a wound spring would change its
+/// sign.
 const FARTHEST_TURN: f64 = 160.0 / 180.0 * PI;
 
-/// How deep a cage may lie in balls or its guide at a start in equilibrium where no contact of a race is deeper, in ball radii.
+/// Largest depth of a cage in balls or its guide at a start in equilibrium, in ball radii, if no contact of a race is
+/// deeper.
 const CAGE_AT_START: f64 = 1e-3;
 
 /// Axial and radial part of an arm.
@@ -76,11 +77,12 @@ fn split(arm: Vec3, axis: Vec3) -> (f64, f64) {
 }
 
 impl Simulation {
-    /// What ends a run. Non-finite values spread within a step from any body to the races'
-    /// velocities, so that a look at the balls' and races' positions finds them all.
+    /// Checks a state after a step. Non-finite values spread within a step from any body to the velocities of the
+    /// races, so that the positions of balls and races show them all.
     ///
     /// # Errors
-    /// The first thing found: body, how far, step and time.
+    ///
+    /// The first violation: body, distance, step and time.
     pub(crate) fn watch(&self) -> Result<(), SimulationError> {
         let system = &self.system;
         for (index, (set, bearing)) in system.sets.iter().zip(&system.assembly.bearings).enumerate()
@@ -126,7 +128,7 @@ impl Simulation {
         SimulationError::NotFinite { body, time: self.time, step: self.steps }
     }
 
-    /// Bodies that bend, where something takes hold of them, acts on them or is watched.
+    /// Sections of flexible bodies with attachments, loads or probes.
     fn watch_bending(&self) -> Result<(), SimulationError> {
         let system = &self.system;
         let assembly = &system.assembly;
@@ -136,7 +138,7 @@ impl Simulation {
         for (index, section) in held.chain(own) {
             let shaft = &assembly.shafts[index];
             let turn = section.turned(&shaft.bend(system.shafts[index], &self.state));
-            // NaN is too far.
+            // NaN must fail.
             if turn <= FARTHEST_BENT {
                 continue;
             }
@@ -152,13 +154,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Springs between bodies, which hold nothing that has gone so far, as they were evaluated last.
+    /// Connections between bodies, as last evaluated.
     fn watch_springs(&self) -> Result<(), SimulationError> {
         let system = &self.system;
         for (index, connection) in system.assembly.connections.iter().enumerate() {
             let [stretch, turn, across] = system.extension(index);
             let wall = connection.wall();
-            // NaN is too far.
+            // NaN must fail.
             let (reaches, turns) = (stretch <= FARTHEST, turn <= FARTHEST_TURN);
             if reaches && turns && across <= wall {
                 continue;
@@ -190,7 +192,7 @@ impl Simulation {
             let position = set.layout.ball_vector(&self.state, POSITION, ball);
             let (axial, radial) = split(sub(position, outer.position), outer.axis);
             let across = radial - geometry.pitch_radius;
-            // Where balls are nearly always costs no root.
+            // The common case needs no square root.
             if axial * axial + across * across <= near {
                 continue;
             }
@@ -211,8 +213,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The inner race against the outer one, in the latter's frame; a tilt counts as what it moves
-    /// the race by at the pitch circle.
+    /// Displacement of the inner race from the outer one, in the frame of the outer one; a tilt counts as the
+    /// displacement at the pitch circle.
     fn watch_races(
         &self,
         [inner, outer]: &[AxisMotion; 2],
@@ -225,7 +227,7 @@ impl Simulation {
         for (way, distance) in
             [("along its axis", axial.abs() + tilted), ("across its axis", radial)]
         {
-            // NaN is too far.
+            // NaN must fail.
             if distance <= allowed {
                 continue;
             }
@@ -239,8 +241,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The body under the outer race against its place at rest, along what is not given of it, beyond what
-    /// given coordinates of the other race take it along.
+    /// Displacement of the body under the outer race from its rest position, along its free coordinates, beyond the
+    /// prescribed displacement of the other race.
     fn watch_travel(&self, bearing: &Bearing) -> Result<(), SimulationError> {
         let bodies = &self.system.assembly.bodies;
         let [inner, outer] = bearing.mounts.map(|mount| &bodies[mount.body]);
@@ -255,7 +257,7 @@ impl Simulation {
                 _ => 0.0,
             };
             let (distance, allowed) = ((at[i] - outer.rest[i]).abs(), FARTHEST + taken_along);
-            // NaN is too far.
+            // NaN must fail.
             if distance <= allowed {
                 continue;
             }
@@ -273,7 +275,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// A race in its bore: beyond these its nodes no longer stand for what is under it, or it hangs in the wall.
+    /// A race in its bore: beyond these limits its contact nodes no longer represent the bore under it.
     fn watch_seat(&self, index: usize, seat: &Seat) -> Result<(), SimulationError> {
         let body = BodyKinematics::new(self.system.body_state(&self.state, seat.race.body));
         let hold = &self.system.holds.seats[index];
@@ -284,7 +286,7 @@ impl Simulation {
             ("along the axis", along.abs(), seat.rim),
             ("across it", across, FARTHEST_IN_BORE * radius),
         ] {
-            // NaN is too far.
+            // NaN must fail.
             if distance <= allowed {
                 continue;
             }
@@ -301,7 +303,7 @@ impl Simulation {
             });
         }
         let tilt = libm::atan2(norm(cross(seat.axis, race.axis)), dot(seat.axis, race.axis));
-        // NaN is too far.
+        // NaN must fail.
         if tilt <= FARTHEST_TILT {
             return Ok(());
         }
@@ -311,7 +313,7 @@ impl Simulation {
         Err(SimulationError::TiltedInSeat { body, seat, tilt, allowed, time, step })
     }
 
-    /// The cage's ring against both races.
+    /// The ring of the cage in both races.
     fn watch_cage(
         &self,
         outer: &AxisMotion,
@@ -321,7 +323,7 @@ impl Simulation {
         let centre = self.system.body_state(&self.state, cage.body).position;
         let (_, distance) = split(sub(centre, outer.position), outer.axis);
         let allowed = cage_room(&bearing.geometry, &cage.contacts);
-        // NaN is too far.
+        // NaN must fail.
         if distance <= allowed {
             return Ok(());
         }
@@ -330,23 +332,25 @@ impl Simulation {
         Err(SimulationError::CageLeft { body, distance, allowed, time, step })
     }
 
-    /// A start in equilibrium leaves the cage out: one whose contacts are deeper than those of the races has no place there.
+    /// Checks the cage at a start in equilibrium, which does not include it: no cage contact may be deeper than those
+    /// of the races.
     ///
     /// # Errors
+    ///
     /// The deepest contact of a cage.
     pub(crate) fn watch_cages_at_start(&self) -> Result<(), SimulationError> {
         for (set, bearing) in self.system.sets.iter().zip(&self.system.assembly.bearings) {
             let Some(cage) = &bearing.cage else { continue };
             let races = set.table.active.iter().map(|pair| set.table.contact[*pair].overlap);
             let allowed = races.fold(CAGE_AT_START * bearing.geometry.ball_radius, f64::max);
-            // What pushes: a cage without stiffness is in nobody's way.
+            // A cage without stiffness carries no load.
             let pushes = |contact: &CageContact| contact.normal_load > 0.0;
             let pockets = set.pockets.iter().enumerate().filter(|(_, contact)| pushes(contact));
             let pockets = pockets.map(|(ball, contact)| (Some(ball), contact.penetration));
             let guides = set.guides.iter().filter(|contact| pushes(contact));
             let guides = guides.map(|contact| (None, contact.penetration));
             let deepest = pockets.chain(guides).fold((None, 0.0f64), |most, one| {
-                // NaN stays.
+                // NaN is kept.
                 if one.1 <= most.1 || most.1.is_nan() { most } else { one }
             });
             if deepest.1 <= allowed {
@@ -362,7 +366,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// What to do where one part is in another.
+    /// Advice for interpenetrating parts.
     fn advice(&self, bearing: &Bearing, between_balls: bool) -> String {
         if between_balls && bearing.ball_contact.is_none() {
             return "nothing keeps balls apart here: give them a contact law (ball_contact.law) or a cage".into();
@@ -384,16 +388,17 @@ impl Simulation {
             })
             .collect();
         if !between_balls && !given.is_empty() {
-            return format!("what is given may be too much: {}", given.join(", "));
+            return format!("the prescribed motion may be too large: {}", given.join(", "));
         }
         if self.steps == 0 {
-            return "it begins so: check clearances, and which way the loads push the races".into();
+            return "it starts so: check clearances, and the direction of the loads on the races"
+                .into();
         }
         "check loads and stiffnesses, or take shorter steps (numerics.step, numerics.accuracy)"
             .into()
     }
 
-    /// Contacts as they were evaluated last, within the step just taken; balls where they lie now.
+    /// Contacts as last evaluated, within the step just taken; balls at their present position.
     fn watch_depths(&self, set: &BallSet, bearing: &Bearing) -> Result<(), SimulationError> {
         let BallSet { layout, table, .. } = set;
         let radius = bearing.geometry.ball_radius;
@@ -430,7 +435,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// How deep two parts of a bearing lie in each other.
+    /// Checks the depth of two parts of a bearing.
     #[inline(always)]
     fn watch_depth(
         &self,
@@ -440,7 +445,7 @@ impl Simulation {
         names: impl Fn() -> [String; 2],
     ) -> Result<(), SimulationError> {
         let allowed = HERTZ_SCALE * bearing.geometry.ball_radius;
-        // NaN is too deep.
+        // NaN must fail.
         if depth <= allowed {
             return Ok(());
         }

@@ -1,12 +1,12 @@
-//! What a condensed bore answers to a rigid race at a pose, contact on one side only.
+//! Response of a condensed bore to a rigid race at a pose, with unilateral contact.
 //!
-//! With q the race's coordinates (y, z, tilts about Y and Z), B the outward motion of its surface at
-//! the nodes for a unit of each, u = C p the nodes' own outward motion under the loads p ≥ 0, and
-//! g₀ the overlap before anything moves, the penetration of (2.19) is g = g₀ + B q − C p, and
-//! p = K g where g > 0. All is linear but for which nodes touch: the loads p are the one minimum of a convex energy
-//! whose value is ½ p·(g₀ + B q), its slope over q the load Bᵀp, its curvature Bᵀ(C + 1/K)⁻¹B over the nodes that touch.
-//! Nodes are let in and out of contact all at once as long as that leaves fewer of them wrong, and one by one
-//! otherwise (block principal pivoting, Júdice and Pires 1994), which ends for every pose.
+//! Let q be the race's coordinates (y, z, tilts about Y and Z), B the outward displacement of its surface at the nodes
+//! per unit of each, u = C p the nodes' own outward displacement under the loads p ≥ 0, and g₀ the initial overlap. The
+//! penetration of (2.19) is g = g₀ + B q − C p, and p = K g where g > 0. All is linear except for the set of contact
+//! nodes: the loads p are the unique minimum of a convex energy with the value ½ p·(g₀ + B q), the gradient Bᵀp over q,
+//! and the curvature Bᵀ(C + 1/K)⁻¹B over the contact nodes. Nodes enter and leave contact all at once as long as that
+//! leaves fewer of them wrong, and one by one otherwise (block principal pivoting, Júdice and Pires 1994), which ends
+//! for every pose.
 
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::vec3::{Vec3, norm};
@@ -17,31 +17,30 @@ use crate::solids::condensation::{CondensedBore, lever, race_motion};
 use nalgebra::{Matrix4, Vector4};
 use thiserror::Error;
 
-/// The race's coordinates in the order of a pose: y, z (m), tilts about Y and Z (rad). Along its
-/// axis the race is held, about it nothing acts: the contact has no friction.
+/// The race's coordinates in the order of a pose: y, z (m), tilts about Y and Z (rad). Its axial position is fixed;
+/// about its axis nothing acts, since the contact has no friction.
 pub const POSE_NAMES: [&str; 4] = ["y", "z", "tilt_y", "tilt_z"];
 
-/// What acts on the race, in its nominal axes, about its own centre.
+/// Wrench on the race, in its nominal axes, about its own centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RaceLoad {
-    /// N. The parts along and about X meet [`Axial`].
+    /// N. Components along X are for [`Axial`].
     pub force: Vec3,
     /// N·m.
     pub moment: Vec3,
 }
 
-/// What takes a force along the race's axis and a moment about it, which a smooth bore without
-/// friction cannot.
+/// Support of the race against axial forces and moments about its axis, which a smooth bore cannot carry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axial {
-    /// Something beside the bore, a shoulder or a ring: the named assumption behind all housings.
+    /// A support beside the bore, such as a shoulder or a ring: the named assumption of all housings.
     #[default]
     Held,
-    /// Nothing: they are an error.
+    /// None: such loads are an error.
     Free,
 }
 
-/// The race's radius, and what holds it along its axis.
+/// Radius of the race, and its axial support.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// Outer radius of the race, m: the bore's radius plus the interference.
@@ -61,19 +60,19 @@ pub enum BoreError {
     #[error("a moment of {moment:.3e} N m turns the outer race in its bore, which has no friction")]
     AxialMoment { moment: f64 },
     #[error(
-        "the bore does not hold the outer race: its loads have {} from its nominal place, and {} N of \
+         "the bore does not hold the outer race: its loads have {} from its nominal position, and {} N of \
          them (of a moment: over the radius) meet no resistance. Hint: a bore without friction holds a race \
          across its axis and, along its width, against tilt: check size and direction of the loads, the fit, and \
-         which parts of the solid are held",
+          which parts of the solid are fixed",
         travel_text(coordinate, *travel),
         to_digits(*force, 3)
     )]
     NotHeld { coordinate: &'static str, travel: f64, force: f64 },
     #[error(
-        "the housing gives way: it holds all {} N of the load on the outer race (of a moment: over the radius), but \
+         "the housing gives way: it carries all {} N of the load on the outer race (of a moment: over the radius), but \
          that has {} from its nominal place, more than a hundredth of its radius of {:.4} mm: beyond small \
          displacements a condensed housing says nothing. Hint: check solid.material.youngs_modulus, which is {} \
-         GPa, and its unit, the loads, and which parts of the solid are held",
+          GPa, and its unit, the loads, and which parts of the solid are fixed",
         to_digits(*load, 4), travel_text(coordinate, *travel), 1e3 * *radius,
         to_digits(1e-9 * *youngs_modulus, 6)
     )]
@@ -84,19 +83,19 @@ pub enum BoreError {
     )]
     BeyondReach { motion: f64, travel: f64 },
     #[error(
-        "the race goes so far across its nodes that their distances do not settle in {rounds} rounds. Hint: less load, a stiffer \
+        "the lateral displacement of the race is so large that the gaps of its nodes do not converge in {rounds} rounds. Hint: less load, a stiffer \
          housing, or a start in nominal positions (numerics.start = \"nominal\")"
     )]
     FarAcross { rounds: usize },
-    #[error("contact has not settled after {changes} changes of the nodes that touch")]
+    #[error("contact has not converged after {changes} changes of the contact nodes")]
     NotSettled { changes: usize },
-    #[error("node {node} of the bore is to touch; it has {count} nodes")]
+    #[error("node {node} of the bore is in the contact list; the bore has {count} nodes")]
     NoSuchNode { node: usize, count: usize },
     #[error(transparent)]
     Factor(#[from] FactorError),
 }
 
-/// How far a race has moved along one of [`POSE_NAMES`], m or rad.
+/// Displacement of a race along one of [`POSE_NAMES`], m or rad, as text.
 fn travel_text(coordinate: &str, travel: f64) -> String {
     match coordinate {
         "y" | "z" => format!("moved it by {:.4} mm along {coordinate}", 1e3 * travel),
@@ -107,22 +106,22 @@ fn travel_text(coordinate: &str, travel: f64) -> String {
     }
 }
 
-/// The race in its bore.
+/// A race in its bore.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoreState {
     /// y, z (m), tilts about Y and Z (rad) from the nominal pose.
     pub pose: [f64; 4],
     /// Outward load on each node of the bore, N.
     pub loads: Vec<f64>,
-    /// Of each node into the race, m; negative where there is a gap.
+    /// Penetration of each node into the race, m; negative for a gap.
     pub penetration: Vec<f64>,
     /// Outward displacement of each node, m.
     pub outward: Vec<f64>,
-    /// What the race puts on the bore along its four coordinates: N, N, N·m, N·m.
+    /// Load of the race on the bore along its four coordinates: N, N, N·m, N·m.
     pub load: [f64; 4],
-    /// ∂load/∂pose while the same nodes touch, symmetric.
+    /// ∂load/∂pose for constant contact nodes, symmetric.
     pub stiffness: Matrix4<f64>,
-    /// In the solid under contact, its own loads and weight, and in the penalty springs, J.
+    /// Energy in the solid under contact, its own loads and weight, and in the penalty springs, J.
     pub elastic_energy: f64,
     pub contact_energy: f64,
     pub touching: usize,
@@ -140,28 +139,28 @@ impl BoreState {
     }
 }
 
-/// Of the race at a pose, its nodes eliminated.
+/// Response to the race at a pose, with bore nodes eliminated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoreAnswer {
-    /// In the solid by contact and in the penalty springs, J.
+    /// Energy of contact in the solid and in the penalty springs, J.
     pub energy: f64,
-    /// What the race puts on the bore along its four coordinates: N, N, N·m, N·m.
+    /// Load of the race on the bore along its four coordinates: N, N, N·m, N·m.
     pub load: Vector4<f64>,
-    /// ∂load/∂pose while the same nodes touch.
+    /// ∂load/∂pose for constant contact nodes.
     pub stiffness: Matrix4<f64>,
-    /// What rounding leaves of the load, N.
+    /// Rounding of the load, N.
     pub rounding: f64,
 }
 
-/// Nodes in contact with the factors that belong to them.
+/// Contact nodes with the factors of their compliance.
 struct Contact {
     nodes: Vec<usize>,
     factor: DenseFactor,
-    /// What follows from them once it has been asked for.
+    /// Computed from the factors on request.
     answer: Option<Motion>,
 }
 
-/// How loads follow the race while the same nodes touch.
+/// Derivative of the loads by the race's coordinates for constant contact nodes.
 #[derive(Clone)]
 struct Motion {
     /// (C + 1/K)⁻¹ B, its four columns.
@@ -169,30 +168,30 @@ struct Motion {
     stiffness: Matrix4<f64>,
 }
 
-/// A search that remembers which nodes touched last, and their factors.
+/// A search that keeps the last contact nodes and their factors.
 pub struct BoreSearch<'a> {
     bore: &'a CondensedBore,
     penalty: Penalty,
     levers: Vec<[f64; 4]>,
     /// 1/K of each node, m/N.
     softness: Vec<f64>,
-    /// How much farther each node is from the race than motions along normals that stay make it, m.
+    /// Additional gap of each node compared with displacements along fixed normals, m.
     beyond: Vec<f64>,
     contact: Option<Contact>,
     pose: [f64; 4],
-    /// R − d of each node with the race at its pose and the bore as its own loads leave it, m.
+    /// R − d of each node with the race at its pose and the bore displaced by its own loads, m.
     overlap: Vec<f64>,
-    /// Outward load on each node, and what it moves each by: N, m.
+    /// Outward load on each node, N, and the displacement by it, m.
     loads: Vec<f64>,
     moves: Vec<f64>,
-    /// Sets of touching nodes whose compliance has been factorised so far.
+    /// Number of sets of contact nodes factorised so far.
     pub changes: usize,
 }
 
-/// Changes of the touching nodes after which a search gives up; a cold start takes about ten.
+/// Limit of these; a cold start takes about ten.
 const MOST_CHANGES: usize = 2000;
-/// Unbalanced part of a load that is met, where the race has gone too far: rounding over travels of millimetres leaves
-/// more than over micrometres.
+/// Unbalanced fraction of a load that counts as carried by a race that has moved too far: rounding grows with
+/// displacements of millimetres.
 pub(crate) const MET: f64 = 1e-6;
 
 impl<'a> BoreSearch<'a> {
@@ -220,20 +219,21 @@ impl<'a> BoreSearch<'a> {
         self.bore
     }
 
-    /// Takes each node to be farther from the race than motions along normals that stay make it, m.
+    /// Sets the additional gap of each node compared with displacements along fixed normals, m.
     pub fn keep_beyond(&mut self, beyond: Vec<f64>) {
         self.beyond = beyond;
     }
 
-    /// Nodes of the bore that touched last, ascending: all that the next answer starts from.
+    /// Last contact nodes, ascending; the next answer depends on them alone.
     pub fn touching(&self) -> &[usize] {
         self.contact.as_ref().map_or(&[], |contact| &contact.nodes)
     }
 
-    /// Goes on from nodes that touched in the same bore, with the same bits.
+    /// Continues from contact nodes of the same bore, with the same bits.
     ///
     /// # Errors
-    /// Nodes that the bore does not have, or a factor that there is not.
+    ///
+    /// Nodes that the bore does not have; a singular compliance.
     pub fn recall(&mut self, touching: &[usize]) -> Result<(), BoreError> {
         if let Some(&node) = touching.iter().find(|&&node| node >= self.levers.len()) {
             return Err(BoreError::NoSuchNode { node, count: self.levers.len() });
@@ -241,7 +241,7 @@ impl<'a> BoreSearch<'a> {
         self.make_contact(touching.to_vec())
     }
 
-    /// Where the race was last: y, z (m), tilts (rad).
+    /// Last pose of the race: y, z (m), tilts (rad).
     pub fn pose(&self) -> [f64; 4] {
         self.pose
     }
@@ -250,8 +250,8 @@ impl<'a> BoreSearch<'a> {
         self.penalty
     }
 
-    /// Change of the nodes' loads with each coordinate of the race, N/m and N/rad, while the same
-    /// nodes touch as in the last answer.
+    /// Derivative of the nodes' loads by each coordinate of the race, N/m and N/rad, for the contact nodes of the last
+    /// answer.
     pub fn loads_by_pose(&self) -> [Vec<f64>; 4] {
         let mut loads: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; self.levers.len()]);
         if let Some(Contact { nodes, answer: Some(answer), .. }) = &self.contact {
@@ -262,8 +262,8 @@ impl<'a> BoreSearch<'a> {
         loads
     }
 
-    /// Change of the nodes' loads, N, where something moves the nodes outwards by so much (m) and the race stands still, while the same
-    /// nodes touch as in the last answer: of the nodes by themselves, to which the bore's answer to the change adds.
+    /// Change of the nodes' loads, N, by outward displacements of the nodes (m) at a fixed race, for the contact nodes
+    /// of the last answer and without the bore's own response.
     pub fn loads_against(&self, outward: &[f64]) -> Vec<f64> {
         let mut loads = vec![0.0; self.levers.len()];
         if let Some(Contact { nodes, factor, .. }) = &self.contact {
@@ -274,9 +274,10 @@ impl<'a> BoreSearch<'a> {
         loads
     }
 
-    /// The race at a given pose: y, z (m), tilts (rad).
+    /// State of the race at a given pose: y, z (m), tilts (rad).
     ///
     /// # Errors
+    ///
     /// [`BoreError::BeyondReach`], [`BoreError::NotFinite`].
     pub fn at_pose(&mut self, fit: &Fit, pose: [f64; 4]) -> Result<BoreState, BoreError> {
         self.answer(fit, pose)?;
@@ -286,7 +287,8 @@ impl<'a> BoreSearch<'a> {
     /// Energy, load and stiffness at a given pose: y, z (m), tilts (rad).
     ///
     /// # Errors
-    /// [`BoreError::NotFinite`], contact that does not settle.
+    ///
+    /// [`BoreError::NotFinite`]; contact that does not converge.
     pub fn answer(&mut self, fit: &Fit, pose: [f64; 4]) -> Result<BoreAnswer, BoreError> {
         check_finite("the race's pose", pose.iter().sum())?;
         check_finite("the race's radius", fit.radius)?;
@@ -303,13 +305,13 @@ impl<'a> BoreSearch<'a> {
             energy += 0.5 * p * g;
             sum += p;
         }
-        // Of the sum, and of the pose.
+        // Rounding of the sum, and of the pose.
         let travel = norm([0.0, pose[0], pose[1]]);
         let rounding = 8.0 * f64::EPSILON * (sum + stiffness.diagonal().rows(0, 2).amax() * travel);
         Ok(BoreAnswer { energy, load, stiffness, rounding })
     }
 
-    /// Why a race is too far from its place along coordinate `worst`, `left` of its load (N) being unbalanced.
+    /// Error of a race too far from its position along coordinate `worst`, with the residual load `left` (N).
     pub(crate) fn lost(
         &self,
         fit: &Fit,
@@ -319,7 +321,7 @@ impl<'a> BoreSearch<'a> {
         load: f64,
     ) -> BoreError {
         let (coordinate, travel) = (POSE_NAMES[worst], pose[worst]);
-        // All of the load meets resistance, only late.
+        // All of the load is carried, only at a large displacement.
         if load > 0.0 && left <= MET * load {
             let (radius, youngs_modulus) = (fit.radius, self.bore.youngs_modulus);
             return BoreError::GivesWay { coordinate, travel, load, radius, youngs_modulus };
@@ -327,7 +329,7 @@ impl<'a> BoreSearch<'a> {
         BoreError::NotHeld { coordinate, travel, force: left }
     }
 
-    /// Finds the nodes that touch, their loads and what these move all by.
+    /// Finds the contact nodes, their loads and displacements.
     fn settle(&mut self) -> Result<(), BoreError> {
         const PATIENCE: usize = 10;
         let count = self.overlap.len();
@@ -343,7 +345,7 @@ impl<'a> BoreSearch<'a> {
             }
             self.moves.fill(0.0);
             self.loads.fill(0.0);
-            // Loads of either sign that are rounding of the largest change nothing.
+            // Loads that are rounding of the largest change no contact.
             let mut largest = 0.0f64;
             let mut inside = vec![false; count];
             if let Some(Contact { nodes, factor, .. }) = &self.contact {
@@ -395,7 +397,7 @@ impl<'a> BoreSearch<'a> {
         Ok(())
     }
 
-    /// Loads over motion of the nodes that touch.
+    /// Derivative of the loads for the contact nodes.
     fn motion(&mut self) -> Option<&Motion> {
         let Contact { nodes, factor, answer } = self.contact.as_mut()?;
         Some(answer.get_or_insert_with(|| {
@@ -415,9 +417,10 @@ impl<'a> BoreSearch<'a> {
         }))
     }
 
-    /// All about the last answer.
+    /// Full state of the last answer.
     ///
     /// # Errors
+    ///
     /// [`BoreError::BeyondReach`].
     pub fn state(&mut self) -> Result<BoreState, BoreError> {
         let stiffness = self.motion().map_or(Matrix4::zeros(), |motion| motion.stiffness);
@@ -439,7 +442,7 @@ impl<'a> BoreSearch<'a> {
             }
         }
         let half_work = |of: &[f64]| 0.5 * of.iter().zip(loads).map(|(u, p)| u * p).sum::<f64>();
-        // Both displacements of the solid, and what the loads of the one do along the other.
+        // Cross term of the displacements by own loads and by contact.
         let both: f64 = bore.own.iter().zip(loads).map(|(own, p)| own * p).sum();
         let squeeze: Vec<f64> = self.softness.iter().zip(loads).map(|(c, p)| c * p).collect();
         Ok(BoreState {
@@ -456,7 +459,7 @@ impl<'a> BoreSearch<'a> {
     }
 }
 
-/// Beyond this a race hangs in its bore, rad; its nodes no longer stand for what is under it.
+/// Largest tilt of a race in its bore, rad, at which its nodes represent the bore under it.
 const LARGEST_TILT: f64 = 0.01;
 
 /// The load along the four coordinates.
@@ -465,13 +468,13 @@ pub(crate) fn check_load(fit: &Fit, load: &RaceLoad) -> Result<Vector4<f64>, Bor
     check_finite("a force on the race", force.iter().sum())?;
     check_finite("a moment on the race", moment.iter().sum())?;
     let size = norm(*force).max(norm(*moment) / fit.radius);
-    // What rounding of a load turned into these axes leaves.
+    // Rounding of a load rotated into these axes.
     let nothing = 1e-9 * size;
     if fit.axial == Axial::Free {
         if force[0].abs() > nothing {
             return Err(BoreError::AxialForce { force: force[0] });
         }
-        // About the axis of a race that tilts nothing turns it without friction; about X its tilting moment has a part.
+        // A tilted race without friction has no moment about its own axis; its tilting moment has a component about X.
         let of_tilts = LARGEST_TILT * libm::hypot(moment[1], moment[2]);
         if moment[0].abs() > nothing * fit.radius + of_tilts {
             return Err(BoreError::AxialMoment { moment: moment[0] });

@@ -1,4 +1,4 @@
-//! Everything an explicit run of a solid needs to go on with the same bits.
+//! Checkpoint of a solid in explicit steps, from which it continues with the same bits.
 
 use crate::solids::explicit::{ExplicitSolid, SolidWork};
 use crate::solids::tet4_blocks::Node;
@@ -12,13 +12,13 @@ pub struct SolidCheckpoint {
     pub displacement: Vec<Node>,
     /// At `time` for Runge–Kutta; half a step before it for central differences.
     pub rate: Vec<Node>,
-    /// Of each node, J.
+    /// Work on each node, J.
     pub external_work: Vec<f64>,
     pub damping_work: Vec<f64>,
     pub work: SolidWork,
-    /// Stresses that rubber remembers, Pa; none of an elastic solid.
+    /// History stresses of rubber, Pa; empty for an elastic solid.
     pub memory: Vec<f64>,
-    /// What its dashpots have taken, and what its stresses did beyond the law of small strain, where that is counted, J.
+    /// Energy dissipated by dashpots, and work of stresses beyond the law of small strain, if counted, J.
     pub dissipated: f64,
     pub beyond: f64,
 }
@@ -30,7 +30,7 @@ impl ExplicitSolid {
         checkpoint
     }
 
-    /// As [`ExplicitSolid::checkpoint`]; allocates nothing the second time, but for rubber.
+    /// See [`ExplicitSolid::checkpoint`]; allocates nothing the second time, except for rubber.
     pub fn checkpoint_into(&self, checkpoint: &mut SolidCheckpoint) {
         checkpoint.time = self.time;
         checkpoint.steps = self.steps;
@@ -46,10 +46,11 @@ impl ExplicitSolid {
         }
     }
 
-    /// Goes back or on to where a checkpoint of the same problem, method and step was taken.
+    /// Continues from a checkpoint of the same problem, method and step.
     ///
     /// # Panics
-    /// If the checkpoint has another number of nodes, or of remembered stresses.
+    ///
+    /// If the checkpoint has another number of nodes or history stresses.
     pub fn restore(&mut self, checkpoint: &SolidCheckpoint) {
         let nodes = self.displacement.len();
         assert_eq!((checkpoint.displacement.len(), checkpoint.rate.len()), (nodes, nodes));

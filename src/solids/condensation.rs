@@ -1,8 +1,8 @@
-//! A linear elastic solid condensed onto the radial displacement of the nodes of its bore.
+//! A linear elastic solid condensed onto the radial displacement of its bore nodes.
 //!
-//! Contact without friction acts along the normals of the bore and feels displacement along them.
-//! So all that contact needs of the solid is how far node i moves outwards under an outward force
-//! on node j: a dense compliance, one solve of the sparse stiffness for each node.
+//! Contact without friction acts along the normals of the bore and depends on displacements along them. So contact
+//! needs the outward displacement of node i under an outward force on node j: a dense compliance, one solve of the
+//! sparse stiffness for each node.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
@@ -21,39 +21,39 @@ use nalgebra::Vector3;
 use std::fmt;
 use thiserror::Error;
 
-/// Which nodes of the bore can be touched at all.
+/// Range of possible contact in a bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// Race in the position from which its motion is measured, its axis along its own X.
+    /// Nominal pose of the race, its axis along its own X.
     pub nominal: Pose,
     /// Largest radius of the race, m.
     pub radius: f64,
-    /// Of the race along its axis, m. Nodes beside it are left out.
+    /// Axial width of the race, m. Nodes beside it are left out.
     pub width: f64,
-    /// Largest way that a node of the bore and the race can make towards each other, m: nodes
-    /// farther than that from the race are left out. `None` leaves none out for distance.
+    /// Largest displacement of a bore node and the race towards each other, m: nodes farther from the race are left
+    /// out. `None`: all nodes under the race are kept.
     pub travel: Option<f64>,
 }
 
-/// Part of the width by which a node may lie beside the race, at each end, and still count as under it:
-/// what rounding does to nodes on its rim.
+/// Fraction of the width by which a node may be outside each end and still count as under the race: rounding of nodes
+/// on its rim.
 const RIM: f64 = 1e-3;
 
-/// Whether a node at `along` (m from the race's centre, along its axis) lies under a race of `width` (m).
+/// Returns whether a node at `along` (m from the race's centre, along its axis) is under a race of `width` (m).
 pub fn is_under(along: f64, width: f64) -> bool {
     along.abs() <= (0.5 + RIM) * width
 }
 
-/// How far a node of the seat of a race of `width` (m) may slide over its rim and still be touched, m: half of what a
-/// node stands for, since the part of the bore that it carries is still under the race by then, and no more than a
-/// quarter of the seat. `areas` (m²) are those of the nodes under the race.
+/// Axial displacement over the rim of a race of `width` (m) at which a bore node is still in contact, m: half of a
+/// node's share, since the part of the bore that it represents is still under the race, and at most a quarter of the
+/// width. `areas` (m²) are those of the nodes under the race.
 pub fn rim(areas: impl ExactSizeIterator<Item = f64>, width: f64) -> f64 {
     let count = areas.len().max(1);
     let area: f64 = areas.sum();
     (0.5 * (area / count as f64).sqrt()).min(0.25 * width)
 }
 
-/// Right-hand sides solved at once.
+/// Number of right-hand sides solved at once.
 const BLOCK: usize = 32;
 
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -65,64 +65,64 @@ pub enum CondenseError {
     #[error("the bore has no node under the race ({bore} in all); check its width and position")]
     NoNodes { bore: usize },
     #[error(
-        "node {node} has a prescribed displacement of {value:.3e} m; a condensed housing is held at \
+        "node {node} has a prescribed displacement of {value:.3e} m; a condensed housing is fixed at \
          zero"
     )]
     MovedSupport { node: u32, value: f64 },
-    #[error("bore node {node} lies on the race's axis, where there is no radial direction")]
+    #[error("bore node {node} is on the race's axis, where there is no radial direction")]
     OnAxis { node: u32 },
 }
 
-/// A node of the bore that is solved for.
+/// A bore node of the condensed solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoreNode {
     pub node: u32,
-    /// From the race's nominal centre, in its nominal axes, m.
+    /// Position from the race's nominal centre, in its nominal axes, m.
     pub arm: Vec3,
     /// Components of the outward normal on the nominal Y and Z.
     pub normal: [f64; 2],
-    /// From the race's nominal axis, m.
+    /// Distance from the race's nominal axis, m.
     pub distance: f64,
-    /// Its share of the bore, m².
+    /// Share of the bore surface, m².
     pub area: f64,
 }
 
-/// How much there was to solve.
+/// Size of a condensation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes {
-    /// Nodes of the bore that carry a share of its surface.
+    /// Bore nodes with a share of its surface.
     pub bore: usize,
-    /// Left out because they lie beside the race.
+    /// Nodes left out beside the race.
     pub beside: usize,
-    /// Left out because they are farther from the race than its travel.
+    /// Nodes left out for their distance from the race.
     pub out_of_reach: usize,
     pub kept: usize,
-    /// Displacement components of the solid that are free.
+    /// Free displacement components of the solid.
     pub unknowns: usize,
 }
 
-/// A solid as its bore sees it.
+/// A solid condensed onto its bore.
 pub struct CondensedBore {
     pub reach: Reach,
     pub nodes: Vec<BoreNode>,
     /// Outward displacement of node i under an outward unit force on node j, m/N.
     pub compliance: DenseSymmetric,
-    /// Largest difference of its two triangles as solved, over its largest entry.
+    /// Asymmetry of the compliance as solved, over its largest entry.
     pub asymmetry: f64,
     /// Outward displacement of the nodes under the solid's own loads and weight, m.
     pub own: Vec<f64>,
-    /// What these have stored in the solid before anything touches it, J.
+    /// Energy of these loads in the solid without contact, J.
     pub own_energy: f64,
     pub sizes: Sizes,
     /// Lumped masses of the solid's nodes, kg.
     pub mass: Vec<f64>,
-    /// Of the solid, Pa.
+    /// Young's modulus of the solid, Pa.
     pub youngs_modulus: f64,
     frame: Frame,
     factor: Factor,
     unknowns: Unknowns,
     own_displacement: Vec<Vec3>,
-    /// How often each stage of the condensation ran.
+    /// Number of runs of each stage.
     pub ran: Counts,
 }
 
@@ -133,17 +133,18 @@ impl fmt::Debug for CondensedBore {
     }
 }
 
-/// The nodes of the bore under the race that are solved for, and what was left out.
+/// The bore nodes under the race, and the number of those left out.
 struct Picked {
     frame: Frame,
     nodes: Vec<BoreNode>,
     sizes: Sizes,
 }
 
-/// Which nodes of `bore` condensing solves for, and over how many unknowns; solves nothing.
+/// Size of the condensation onto `bore`, without solving.
 ///
 /// # Errors
-/// As [`condense`], but for a solid that is free to move.
+///
+/// See [`condense`], except for a solid that is free to move.
 pub fn sizes(
     model: &SolidModel,
     unknowns: &Unknowns,
@@ -153,7 +154,7 @@ pub fn sizes(
     Ok(pick(model, unknowns, bore, reach)?.sizes)
 }
 
-/// Memory that condensing onto the nodes of those sizes needs.
+/// Memory of a condensation of this size.
 pub fn memory(unknowns: &Unknowns, sizes: &Sizes) -> Memory {
     condensed(unknowns, sizes.kept, BLOCK)
 }
@@ -198,6 +199,7 @@ fn pick(
 /// Condenses `model` at zero displacement onto the nodes of `bore` under the race.
 ///
 /// # Errors
+///
 /// A solid that is free to move, supports that move, no node under the race.
 pub fn condense(
     model: &SolidModel,
@@ -207,10 +209,11 @@ pub fn condense(
     condense_over(model, Unknowns::new(model), bore, reach)
 }
 
-/// The same over unknowns that are numbered already.
+/// The same over given unknowns.
 ///
 /// # Errors
-/// As [`condense`].
+///
+/// See [`condense`].
 pub fn condense_over(
     model: &SolidModel,
     unknowns: Unknowns,
@@ -267,7 +270,7 @@ pub fn condense_over(
         .iter()
         .zip(&outward)
         .map(|(node, &outward)| dot(own_displacement[node.node as usize], outward));
-    // Half of what loads that have always been there do along the way that they made.
+    // Half of the work of constant loads along their own displacement.
     let work = forces.iter().zip(&own_displacement);
     let work: f64 = work.map(|([x, y, z, _], u)| dot([*x, *y, *z], *u)).sum();
     Ok(CondensedBore {
@@ -289,8 +292,8 @@ pub fn condense_over(
 }
 
 impl CondensedBore {
-    /// The whole displacement field, m, under outward forces on the bore's nodes (N, in the order of
-    /// `nodes`) and the solid's own loads.
+    /// Displacement of all nodes, m, under outward forces on the bore nodes (N, in the order of `nodes`) and the
+    /// solid's own loads.
     pub fn displacement(&self, loads: &[f64]) -> Vec<Vec3> {
         let by_contact = self.response(loads);
         by_contact.into_iter().zip(&self.own_displacement).map(|(u, own)| add(u, *own)).collect()
@@ -301,7 +304,7 @@ impl CondensedBore {
         self.response_to(self.nodal_forces(loads))
     }
 
-    /// The whole displacement field, m, under forces on nodes (N).
+    /// Displacement of all nodes, m, under forces on nodes (N).
     pub fn response_to(&self, forces: impl Iterator<Item = (u32, Vec3)>) -> Vec<Vec3> {
         let mut right = vec![0.0; self.unknowns.count];
         for (node, force) in forces {
@@ -311,7 +314,7 @@ impl CondensedBore {
         self.field(&right)
     }
 
-    /// The same under many loads, a block of them at a time.
+    /// The same for many loads, a block at a time.
     pub fn responses_to(&self, loads: &[Vec<(u32, Vec3)>]) -> Vec<Vec<Vec3>> {
         let size = self.unknowns.count;
         let mut all = Vec::with_capacity(loads.len());
@@ -334,7 +337,7 @@ impl CondensedBore {
         nodes.map(|node| gather(&self.unknowns, node, solution)).collect()
     }
 
-    /// Outward forces on the bore's nodes as vectors in the world, N.
+    /// Outward forces on the bore nodes as vectors in the world, N.
     pub fn nodal_forces<'a>(&'a self, loads: &'a [f64]) -> impl Iterator<Item = (u32, Vec3)> + 'a {
         let force = |(node, &load): (&BoreNode, &f64)| {
             (node.node, scale(in_world(&self.frame, node.normal), load))
@@ -342,10 +345,11 @@ impl CondensedBore {
         self.nodes.iter().zip(loads).map(force)
     }
 
-    /// Natural modes of the solid, `model`, by the factors that are there.
+    /// Natural modes of the solid, `model`, by the existing factors.
     ///
     /// # Errors
-    /// As [`modes_of_held`].
+    ///
+    /// See [`modes_of_held`].
     pub fn modes(&self, model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeError> {
         modes_of_held(model, &self.unknowns, &self.factor, options)
     }
@@ -374,9 +378,9 @@ impl CondensedBore {
     }
 }
 
-/// How far distances from the race's axis, with every node at its displaced place (m, one vector for
-/// each node of the solid) and the race at its pose (y, z in m, tilts in rad), are from those that
-/// normals kept fixed give: the largest difference over the bore's nodes, m.
+/// Error of the distances from the race's axis with fixed normals: the largest difference over the bore nodes, m, from
+/// those of the displaced nodes (m, one vector for each node of the solid) and the race at its pose (y, z in m, tilts
+/// in rad).
 pub fn geometry_error(bore: &CondensedBore, displacement: &[Vec3], pose: &[f64; 4]) -> f64 {
     let moved = bore.nodes.iter().map(|node| displacement[node.node as usize]);
     beyond_normals(bore, moved, pose).fold(0.0, |largest: f64, beyond| largest.max(beyond.abs()))
@@ -399,8 +403,8 @@ pub fn beyond_normals<'a>(
     })
 }
 
-/// Outward motion of the race's surface at a node for small coordinates of the race: y, z (m) and
-/// the tilts about Y and Z (rad).
+/// Outward displacement of the race's surface at a node for small coordinates of the race: y, z (m) and the tilts about
+/// Y and Z (rad).
 pub(crate) fn race_motion(node: &BoreNode, pose: &[f64; 4]) -> f64 {
     let by = lever(node);
     by[0] * pose[0] + by[1] * pose[1] + by[2] * pose[2] + by[3] * pose[3]
@@ -425,7 +429,7 @@ fn in_world(frame: &Frame, [ny, nz]: [f64; 2]) -> Vec3 {
     add(scale(frame.to_body[1], ny), scale(frame.to_body[2], nz))
 }
 
-/// Adds a force on a node to a right-hand side; held components take it.
+/// Adds a force on a node to a right-hand side; fixed components ignore it.
 fn scatter(unknowns: &Unknowns, node: u32, force: Vec3, right: &mut [f64]) {
     for (of, force) in unknowns.of[node as usize].into_iter().zip(force) {
         if of != PRESCRIBED {

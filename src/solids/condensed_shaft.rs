@@ -1,15 +1,15 @@
-//! A shaft of tetrahedra as matrices over stations along its axis, in the place of a beam's.
+//! Matrices of a shaft of tetrahedra over stations along its axis, instead of a beam's.
 //!
-//! Coordinates are what stations feel ([`RotorSection`]): the mean displacement of a section and the rotation that fits it best. The
-//! solid is condensed onto them: for a unit of each it takes the shape of least strain energy, so that loads on stations
-//! are answered exactly while they are slow; masses are those of these shapes. What is missed is motion within the sections and
-//! between stations, far above the frequencies of a shaft that bends.
+//! The coordinates of a station ([`RotorSection`]) are the mean displacement of a section and its best-fit rotation.
+//! The solid is condensed onto them: for a unit of each it takes the displacement of least strain energy, so that slow
+//! loads on stations have the exact response; masses are those of these displacements. Omitted is motion within
+//! sections and between stations, far above the frequencies of a bending shaft.
 //!
-//! A body of revolution that spins is looked at where it passes (Eulerian): with displacements u in axes that do not spin, its
-//! matter moves with ∂u/∂t + Ω ∂u/∂θ. A field u that bends towards Y and the same towards Z, u′, are of one harmonic around:
-//! ∂u/∂θ = e × u − u′, without a derivative to be taken. ∫ρ u̇·∂u/∂θ then is the gyroscopic matrix; what goes with Ω² is a part of ρΩ²r²/E
-//! (1e-6) of the stiffness, and left out. In a body that is not of revolution these axes see inertia and stiffness
-//! change with every turn: it is refused.
+//! A rotating axisymmetric body is described in space (Eulerian): with displacements u in axes that do not rotate, its
+//! matter moves with ∂u/∂t + Ω ∂u/∂θ. A field u of bending towards Y and the same towards Z, u′, are of one harmonic
+//! around: ∂u/∂θ = e × u − u′, without a numerical derivative. ∫ρ u̇·∂u/∂θ is the gyroscopic matrix; terms of Ω² are
+//! ρΩ²r²/E (1e-6) of the stiffness, and omitted. The inertia and stiffness of a body that is not axisymmetric would
+//! change in these axes with every turn: it is refused.
 
 use crate::ch4_rotor::beam::{NODES, shortening};
 use crate::ch4_rotor::section::RotorSection;
@@ -38,24 +38,25 @@ pub enum SolidShaftError {
     Factor(#[from] FactorError),
     #[error("no element of the shaft ends at {at} m: a station needs a layer of nodes")]
     NoLayer { at: f64 },
-    #[error("the section at {at} m has its centre {off} m beside the axis X")]
+    #[error("the section at {at} m has its centre {off} m off the axis X")]
     OffAxis { at: f64, off: f64 },
     #[error(
-        "a shaft that spins in a reduced form has to be of revolution: {what} differs by {part:.1e} of itself between \
-         two directions across the axis, at most {most:.0e} is taken"
+        "a rotating shaft in reduced form must be axisymmetric: {what} differs by {part:.1e} of itself between \
+          two directions across the axis; at most {most:.0e} is allowed"
     )]
     NotRound { what: &'static str, part: f64, most: f64 },
     #[error("segments of different materials: a shaft of tetrahedra has one")]
     Materials,
 }
 
-/// Right-hand sides solved at once.
+/// Number of right-hand sides solved at once.
 const BLOCK: usize = 32;
 
-/// The section of a mesh at x = `at` (m): faces of elements that end there, on the side where they cover less where it steps.
+/// The section of a mesh at x = `at` (m): faces of elements that end there, on the side of the smaller area at a step.
 ///
 /// # Errors
-/// No such faces, faces beside the axis.
+///
+/// No such faces, or faces off the axis.
 pub fn section(mesh: &TetMesh, at: f64) -> Result<RotorSection, SolidShaftError> {
     let near = 1e-7 * mesh.size();
     let (mut below, mut above) = (Vec::new(), Vec::new());
@@ -72,7 +73,7 @@ pub fn section(mesh: &TetMesh, at: f64) -> Result<RotorSection, SolidShaftError>
     }
     let of = |faces: &[Face]| {
         let areas = (0u32..).zip(vector_areas(mesh, faces));
-        // Faces look one way; corners of curved six-node ones may carry a little less than nothing.
+        // Faces on one side only; corners of curved six-node faces may have a slightly negative share.
         let carrying: Vec<(u32, f64)> =
             areas.map(|(node, area)| (node, area[0])).filter(|(_, area)| *area != 0.0).collect();
         let way = carrying.iter().map(|(_, area)| area).sum::<f64>().signum();
@@ -94,25 +95,25 @@ pub fn section(mesh: &TetMesh, at: f64) -> Result<RotorSection, SolidShaftError>
     Ok(section)
 }
 
-/// A free solid and the sections that it is condensed onto.
+/// A free solid and its sections.
 struct Body<'m> {
     problem: &'m SolidProblem,
     sections: &'m [RotorSection],
-    /// Its centre of mass, m: rigid rotations are about here.
+    /// Its centre of mass, m, the origin of rigid rotations.
     origin: Vec3,
     factor: Factor,
     unknowns: Unknowns,
 }
 
-/// Loads on stations, the rigid motions that go with them, and what these are at the stations.
+/// Loads on stations, the corresponding rigid motions, and their values at the stations.
 struct Coordinates {
-    /// Force and moment of a unit of each.
+    /// Force and moment per unit of each.
     loads: Vec<(usize, [Vec3; 2])>,
-    /// Velocity and spin.
+    /// Velocity and angular velocity.
     rigid: Vec<[Vec3; 2]>,
 }
 
-/// Displacements of all nodes for a unit of each coordinate, one a column, their momenta, and the stiffness.
+/// Displacements of all nodes per unit of each coordinate, one a column, their momenta, and the stiffness.
 struct Condensed {
     fields: DMatrix<f64>,
     momenta: DMatrix<f64>,
@@ -181,9 +182,9 @@ impl<'m> Body<'m> {
         Ok(Body { problem, sections, origin, factor, unknowns })
     }
 
-    /// Deflection and turn of every section towards Y (0) or Z (1).
+    /// Deflection and rotation of every section towards Y (0) or Z (1).
     fn bending(&self, plane: usize) -> Coordinates {
-        // As the turn from X towards Y, and towards Z.
+        // The rotation from X towards Y, and towards Z.
         let turn = [AXES[2], [0.0, -1.0, 0.0]][plane];
         let both = |at: usize| [(at, [AXES[1 + plane], NONE]), (at, [NONE, turn])];
         Coordinates {
@@ -196,7 +197,7 @@ impl<'m> Body<'m> {
         rigid(&self.problem.nodes, self.origin, [velocity, spin])
     }
 
-    /// Displacements of all nodes under loads on stations, the pins held.
+    /// Displacements of all nodes under loads on stations, with fixed pins.
     fn answers(&self, loads: &[Vec<(u32, Vec3)>]) -> DMatrix<f64> {
         let (size, nodes) = (self.unknowns.count, self.problem.nodes.len());
         let mut fields = DMatrix::zeros(3 * nodes, loads.len());
@@ -224,8 +225,8 @@ impl<'m> Body<'m> {
         fields
     }
 
-    /// Shapes of least strain energy for a unit of each coordinate: K u = B λ with Bᵀu = 1 of one and 0 of the others, λ in
-    /// balance.
+    /// Displacements of least strain energy per unit of each coordinate: K u = B λ with Bᵀu = 1 for one and 0 for the
+    /// others, λ in balance.
     fn condensed(&self, of: &Coordinates) -> Condensed {
         let loads: Vec<Vec<(u32, Vec3)>> = of
             .loads
@@ -245,7 +246,7 @@ impl<'m> Body<'m> {
             })
         };
         let (count, free) = (loads.len(), of.rigid.len());
-        // Moments by a length as forces count, flexibilities by the largest: rows of one size.
+        // Moments over a length to scale as forces, flexibilities over the largest: rows of one size.
         let lever = self.sections.iter().map(|section| section.area.sqrt()).fold(0.0, f64::max);
         let motions = of.loads.iter().map(|(_, motion)| motion).chain(&of.rigid);
         let unit: Vec<f64> =
@@ -270,13 +271,13 @@ impl<'m> Body<'m> {
         let mut wanted = DMatrix::zeros(count + free, count);
         wanted.view_mut((0, 0), (count, count)).fill_with_identity();
         let found = whole.full_piv_lu().solve(&wanted).unwrap_or_else(|| wanted.clone() * f64::NAN);
-        // λ and the rigid parts for a unit of each coordinate.
+        // λ and the rigid parts per unit of each coordinate.
         let loads =
             DMatrix::from_fn(count, count, |i, j| found[(i, j)] * unit[i] * unit[j] / softest);
         let shifts =
             DMatrix::from_fn(free, count, |i, j| found[(count + i, j)] * unit[count + i] * unit[j]);
         let mut fields = answers * &loads + rigid * shifts;
-        // Rigid motions out of the plane are free, as the pins had them: a body of revolution has none of them.
+        // Rigid motions out of the plane are fixed by the pins: an axisymmetric body has none of them.
         let others = AXES.map(|axis| [[axis, NONE], [NONE, axis]]).into_iter().flatten();
         let others = others.filter(|[shift, turn]| {
             let along = |motion: &[Vec3; 2]| dot(motion[0], *shift) + dot(motion[1], *turn) != 0.0;
@@ -295,7 +296,7 @@ impl<'m> Body<'m> {
     }
 }
 
-/// Six components that hold a body and strain nothing: a node, the farthest from it along X, and the farthest from the axis
+/// Six components that fix a body without strain: a node, the farthest from it along X, and the farthest from the axis
 /// of both.
 fn pins(nodes: &[Vec3]) -> Vec<Prescribed> {
     let best = |of: &dyn Fn(&Vec3) -> f64| {

@@ -10,25 +10,25 @@ use crate::solids::model::SolidModel;
 use crate::solids::step_limit::SolidStepLimit;
 use crate::solids::tet4_blocks::Node;
 
-/// Where a cylinder is, and how large, over time.
+/// Position and radius of a cylinder over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CylinderPath {
     /// Pose before any displacement.
     pub start: Pose,
     /// Displacement of the centre, m.
     pub displacement: [Profile; 3],
-    /// Radius, m; an interference grows in by it.
+    /// Radius, m; a growing interference changes it.
     pub radius: Profile,
 }
 
-/// A cylinder that may touch some nodes of a solid.
+/// A cylinder that may be in contact with some nodes of a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CylinderContact {
     pub path: CylinderPath,
-    /// Of the cylinder, along its axis, m.
+    /// Width along its axis, m.
     pub width: f64,
     pub penalty: Penalty,
-    /// From [`contact_nodes`](crate::ch2_housing::bore_contact::contact_nodes).
+    /// See [`contact_nodes`](crate::ch2_housing::bore_contact::contact_nodes).
     pub nodes: Vec<ContactNode>,
 }
 
@@ -38,7 +38,7 @@ impl CylinderContact {
         self.part_way(t, 1.0)
     }
 
-    /// As at time `t`, but gone a fraction of the way from its start and its radius at time 0.
+    /// The cylinder with a fraction of its displacement and of its growth at time `t`.
     pub fn part_way(&self, t: f64, fraction: f64) -> (Cylinder, Frame) {
         let CylinderPath { start, displacement, radius } = &self.path;
         let mut frame = Frame::new(start);
@@ -51,8 +51,8 @@ impl CylinderContact {
     }
 }
 
-/// The step limit of a solid whose contact is closed at every one of `nodes`: by Weyl's bound its
-/// highest frequency squared is at most the body's own plus the largest K/m.
+/// Step limit of a solid with all of `nodes` in contact: by Weyl's bound the square of its highest frequency grows by
+/// at most the largest K/m.
 pub fn closed_limit(
     model: &SolidModel,
     nodes: &[ContactNode],
@@ -66,14 +66,14 @@ pub fn closed_limit(
     of_solid.with(nodes.iter().map(of_node).fold(0.0, f64::max))
 }
 
-/// Where a cylinder is, and the solid around it.
+/// A cylinder and the solid around it.
 pub struct Pressed<'s> {
     pub cylinder: &'s Cylinder,
     pub frame: &'s Frame,
     pub penalty: Penalty,
     /// Ascending.
     pub nodes: &'s [ContactNode],
-    /// m, for each node of the solid.
+    /// Displacement of each node, m.
     pub displacement: &'s [Node],
 }
 
@@ -82,8 +82,8 @@ pub fn press(pressed: &Pressed, forces: &mut [Node]) -> ContactSum {
     press_and(pressed, forces, |_, _, _| None)
 }
 
-/// The same with a further force (N) on nodes that touch, if there is one: `also` is given the node, its contact and how
-/// stiff that is (N/m).
+/// The same with an additional force (N) on contact nodes: `also` returns it for a node, its contact and its contact
+/// stiffness (N/m).
 pub fn press_and(
     pressed: &Pressed,
     forces: &mut [Node],

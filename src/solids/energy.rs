@@ -14,25 +14,25 @@ pub struct SolidEnergy {
     pub kinetic: f64,
 }
 
-/// Energy held, and work done since the start, J.
+/// Stored energy, and work since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolidLedger {
     pub energy: SolidEnergy,
-    /// Of loads and of drives.
+    /// Work of loads and drives.
     pub external_work: f64,
-    /// ≤ 0 but for a body that damping carries along.
+    /// ≤ 0 unless damping moves the body.
     pub damping_work: f64,
 }
 
 impl SolidLedger {
-    /// Energy held less all work done: what it was at the start, if all is accounted for.
+    /// Stored energy less all work: constant if the balance holds.
     pub fn balance(&self) -> f64 {
         let SolidEnergy { strain, kinetic } = self.energy;
         strain + kinetic - self.external_work - self.damping_work
     }
 }
 
-/// ∫W dV from the displacements, J.
+/// ∫W dV for these displacements, J.
 pub fn strain_energy(model: &SolidModel, displacement: &[Node]) -> f64 {
     let law = model.problem.material;
     let count = model.problem.elements.len();

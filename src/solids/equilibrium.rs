@@ -16,15 +16,15 @@ use crate::solids::trust::{Placed, farthest, size};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquilibriumOptions {
-    /// Largest unbalanced force, as a fraction of the largest force at work.
+    /// Largest force residual, as a fraction of the largest force.
     pub tolerance: f64,
-    /// As much where rounding lets it fall no further; see [`EquilibriumOptions::default`].
+    /// The same if rounding prevents further reduction; see [`EquilibriumOptions::default`].
     pub rounding: f64,
     pub most_iterations: usize,
     /// Load steps are halved until they converge, down to this fraction of the load.
     pub smallest_load_step: f64,
-    /// Which masses gravity pulls at. Lumped ones give the state in which explicit steps stay at
-    /// rest, for ten-node elements at the price of an order of convergence.
+    /// Mass matrix of gravity. Lumped masses give the state in which explicit steps stay at rest, for ten-node elements
+    /// at the price of an order of convergence.
     pub gravity: MassMatrix,
 }
 
@@ -33,9 +33,9 @@ impl Default for EquilibriumOptions {
         EquilibriumOptions {
             // Rounding of nodal forces of stiff elements under small loads leaves about 1e-11.
             tolerance: 1e-10,
-            // Towards ν = 1/2 the stresses of an element grow as 1/(1 − 2ν) while their sum at a node
-            // does not, and rounding leaves so much more: 7e-10 of a bent bar at ν = 0.49999. 1e-8 is
-            // still far below what meshes are good to.
+            // Towards ν = 1/2 the stresses of an element grow as 1/(1 − 2ν) while their sum at a node does not, and
+            // rounding grows in proportion: 7e-10 for a bent bar at ν = 0.49999. 1e-8 is still far below the error of
+            // meshes.
             rounding: 1e-8,
             most_iterations: 30,
             smallest_load_step: 1.0 / 1024.0,
@@ -46,22 +46,23 @@ impl Default for EquilibriumOptions {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// m, one for each node.
+    /// Displacement of each node, m.
     pub displacement: Vec<Vec3>,
     /// Forces of the supports on the nodes, N; zero on free components.
     pub reactions: Vec<Vec3>,
-    /// Largest unbalanced force over the largest force at work.
+    /// Largest force residual over the largest force.
     pub residual: f64,
     pub iterations: usize,
     pub factorisations: usize,
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub ran: Counts,
 }
 
 /// Equilibrium under the loads and prescribed displacements at time `t`.
 ///
 /// # Errors
-/// A body that is free to move, no convergence, or only with an element turned inside out.
+///
+/// A body that is free to move, no convergence, or an inverted element.
 pub fn equilibrium(
     model: &SolidModel,
     t: f64,
@@ -70,10 +71,11 @@ pub fn equilibrium(
     equilibrium_over(model, Unknowns::new(model), t, options)
 }
 
-/// The same over unknowns that are numbered already.
+/// The same over given unknowns.
 ///
 /// # Errors
-/// As [`equilibrium`].
+///
+/// See [`equilibrium`].
 pub fn equilibrium_over(
     model: &SolidModel,
     unknowns: Unknowns,
@@ -83,20 +85,21 @@ pub fn equilibrium_over(
     Ok(solve(Newton::new(model, unknowns, t, options))?.finish())
 }
 
-/// A solid pressed by a rigid cylinder.
+/// Equilibrium of a solid with a rigid cylinder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactEquilibrium {
     pub solid: Equilibrium,
     pub sum: ContactSum,
-    /// The nodes that touch and the force on each, N.
+    /// Contact nodes and the force on each, N.
     pub nodes: Vec<(ContactNode, Vec3)>,
 }
 
-/// Equilibrium under the loads, prescribed displacements and cylinder at time `t`, from the
-/// displacements `start` (m, one for each node), or undeformed.
+/// Equilibrium under the loads, prescribed displacements and cylinder at time `t`, from the displacements `start` (m,
+/// one for each node), or undeformed.
 ///
 /// # Errors
-/// As [`equilibrium`].
+///
+/// See [`equilibrium`].
 pub fn equilibrium_in_contact(
     model: &SolidModel,
     t: f64,
@@ -127,7 +130,7 @@ fn solve(mut newton: Newton) -> Result<Newton, EquilibriumError> {
             continue;
         };
         newton.displacement = before;
-        // Without memory or with a part that is free to move smaller steps are of no use.
+        // Without memory, or with a part that is free to move, smaller steps do not help.
         match &error {
             EquilibriumError::Factor(FactorError::NoMemory { .. }) => return Err(error),
             EquilibriumError::Factor(_) => newton.refuse_free()?,
@@ -156,16 +159,16 @@ struct Newton<'a> {
     unknowns: Unknowns,
     matrix: SymmetricMatrix,
     factor: Option<Factor>,
-    /// Whether the factors are of another state than the last one solved for.
+    /// True if the factors are of another state than the last one solved for.
     stale: bool,
-    /// Whether the stiffness at rest has been factorised, so that no part is free to move.
+    /// True if the stiffness at rest has been factorised: no part is free to move.
     held: bool,
-    /// Largest displacement of the whole load by the first stiffness, m.
+    /// Largest displacement by the first stiffness under the whole load, m.
     linear: Option<Placed>,
     displacement: Vec<Vec3>,
     external: Vec<[f64; 4]>,
     contact: Option<&'a CylinderContact>,
-    /// As of the last evaluation of the contact.
+    /// Contact nodes of the last evaluation.
     touching: Vec<Touching>,
     sum: ContactSum,
     residual: f64,
@@ -211,7 +214,7 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Forces may balance on an element that is turned inside out: no state of a body.
+    /// Forces may balance on an inverted element, which is an invalid state.
     fn refuse_inverted(&self, fraction: f64) -> Result<(), EquilibriumError> {
         match first_inverted(self.model, &self.displacement) {
             None => Ok(()),
@@ -233,8 +236,8 @@ impl<'a> Newton<'a> {
         forces
     }
 
-    /// Adds the forces of the cylinder, gone a fraction of its way, N. Says whether other nodes touch
-    /// than before, and how large a force rounding may leave.
+    /// Adds the forces of the cylinder at a fraction of its displacement, N. Returns whether the contact nodes have
+    /// changed, and the rounding of the forces.
     fn add_contact(&mut self, fraction: f64, forces: &mut [[f64; 4]]) -> (bool, f64) {
         let Some(of) = self.contact else { return (false, 0.0) };
         let (cylinder, frame) = of.part_way(self.t, fraction);
@@ -252,7 +255,7 @@ impl<'a> Newton<'a> {
                     forces[node.node as usize][i] += force[i];
                 }
                 stiffest = stiffest.max(stiffness);
-                // Penetration over radius is all that is left out: some 1e-7 where it matters.
+                // The neglected penetration over radius is some 1e-7 where it matters.
                 let stiffness = touch.normal_stiffness(stiffness);
                 found.push(Touching { node: *node, force, stiffness });
             },
@@ -260,13 +263,13 @@ impl<'a> Newton<'a> {
         let same = found.len() == self.touching.len()
             && found.iter().zip(&self.touching).all(|(a, b)| a.node.node == b.node.node);
         self.touching = found;
-        // A penetration is a difference of lengths as large as these.
+        // A penetration is a difference of lengths of this size.
         let lengths = cylinder.radius + norm(frame.centre);
         (!same, 8.0 * f64::EPSILON * lengths * stiffest)
     }
 
-    /// Newton iterations at a fraction of the load. The factors of an earlier state are kept as
-    /// long as they bring the residual down tenfold a step.
+    /// Newton iterations at a fraction of the load. Factors of an earlier state are kept as long as they reduce the
+    /// residual tenfold a step.
     fn converge(&mut self, fraction: f64) -> Result<(), EquilibriumError> {
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
             self.displacement[*node as usize][*axis] = fraction * profile.value(self.t);
@@ -285,7 +288,7 @@ impl<'a> Newton<'a> {
                     if of[i] != PRESCRIBED {
                         let unbalanced = internal[n][i] + fraction * self.external[n][i];
                         right[of[i]] = unbalanced;
-                        // `max` would drop what is not a number.
+                        // `max` would drop NaN.
                         finite &= unbalanced.is_finite();
                         largest = largest.max(unbalanced.abs());
                     }
@@ -295,8 +298,8 @@ impl<'a> Newton<'a> {
             if finite && largest <= f64::max(self.options.tolerance * scale, rounding) {
                 return Ok(());
             }
-            // Factors of the very state it was at, no node more or less in contact, and yet the step
-            // did not halve the residual: what is left is rounding.
+            // With factors of the same state and the same contact nodes the step did not halve the residual: it is
+            // rounding.
             let stagnates = fresh && !changed && largest > 0.5 * last;
             if finite && stagnates && largest <= self.options.rounding * scale {
                 return Ok(());
@@ -371,7 +374,7 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Why the last step failed, from the displacements before it; at rest the body is sound.
+    /// Cause of the failure of the last step, from the displacements before it; at rest the body is valid.
     fn with_cause(&self, error: EquilibriumError, reached: f64) -> EquilibriumError {
         match error {
             EquilibriumError::Factor(FactorError::NotPositiveDefinite { pivot }) => {

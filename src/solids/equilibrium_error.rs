@@ -1,4 +1,4 @@
-//! Why a solid has no equilibrium.
+//! Errors in the equilibrium of a solid.
 
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::clock::to_digits;
@@ -9,19 +9,19 @@ use crate::solids::trust::Placed;
 use std::fmt;
 use thiserror::Error;
 
-/// A displacement component at which a stiffness turned out not to be positive definite.
+/// A displacement component at which a stiffness is not positive definite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pivot {
-    /// As the mesh's file calls it; `None` for a node on an edge that the file does not have.
+    /// Number in the mesh file; `None` for a mid-side node that the file does not have.
     pub node: Option<u64>,
-    /// Undeformed, m.
+    /// Undeformed position, m.
     pub at: Vec3,
     /// 0, 1 or 2 for X, Y, Z.
     pub axis: usize,
 }
 
 impl Pivot {
-    /// The component with this number among the unknowns.
+    /// The component of this unknown.
     pub fn of(model: &SolidModel, unknowns: &Unknowns, number: usize) -> Pivot {
         let found = unknowns.of.iter().enumerate().find_map(|(node, of)| {
             let axis = of.iter().position(|unknown| *unknown == number)?;
@@ -51,31 +51,31 @@ pub enum EquilibriumError {
     #[error("{}", free_text(pivot))]
     Free { pivot: Pivot },
     #[error(
-        "no equilibrium found {}: beyond that the stiffness is not positive definite ({pivot}). At rest it is, so \
+         "no equilibrium found {}: beyond that the stiffness is not positive definite ({pivot}). At rest it is, so \
          that no part is free to move: the load is too large for the body, or the body buckles. By the linear \
          law the whole load would move it by {} mm (at {}), and it is {} mm across; {}",
         reached_text(*reached, moved), millimetres(linear.value), place(&linear.at), millimetres(*size),
         remedy(*poisson_ratio)
     )]
     TooLarge {
-        /// Part of the load up to which there was an equilibrium, and the largest displacement there.
+        /// Largest fraction of the load with an equilibrium, and the largest displacement there.
         reached: f64,
         moved: Box<Placed>,
         pivot: Box<Pivot>,
-        /// Largest displacement of the whole load by the stiffness at rest, m.
+        /// Largest displacement by the stiffness at rest under the whole load, m.
         linear: Box<Placed>,
         /// Diagonal of the box around the body, m.
         size: f64,
         poisson_ratio: f64,
     },
     #[error(
-        "no equilibrium found: at {fraction} of the load the unbalanced force is {residual:.3e} N \
+         "no equilibrium found: at {fraction} of the load the force residual is {residual:.3e} N \
          of {scale:.3e} N after {iterations} iterations; {}",
         remedy(*poisson_ratio)
     )]
     NotConverged { fraction: f64, residual: f64, scale: f64, iterations: usize, poisson_ratio: f64 },
     #[error(
-        "no equilibrium found: at {fraction} of the load element {element} at {} is turned inside out \
+         "no equilibrium found: at {fraction} of the load element {element} at {} is inverted \
          (volume ratio {ratio:.3}); {}",
         place(at),
         remedy(*poisson_ratio)
@@ -83,15 +83,15 @@ pub enum EquilibriumError {
     Inverted { fraction: f64, element: u64, at: Vec3, ratio: f64, poisson_ratio: f64 },
 }
 
-/// Of a body whose stiffness at rest has no factors.
+/// Message for a body whose stiffness at rest is singular.
 pub fn free_text(pivot: &Pivot) -> String {
     format!(
-        "the stiffness of the body at rest is not positive definite ({pivot}): a part is free to move, or hangs \
-         on next to nothing; hold it, or check the mesh for parts that do not touch"
+        "the stiffness of the body at rest is not positive definite ({pivot}): a part is free to move, or is barely \
+          supported; fix it, or check the mesh for parts that are not joined"
     )
 }
 
-/// How far a search came.
+/// The last equilibrium of a search.
 fn reached_text(reached: f64, moved: &Placed) -> String {
     if reached > 0.0 {
         let moved_by = millimetres(moved.value);
@@ -101,15 +101,15 @@ fn reached_text(reached: f64, moved: &Placed) -> String {
             place(&moved.at)
         );
     }
-    "under the smallest part of the load that was tried".to_string()
+    "under the smallest fraction of the load that was tried".to_string()
 }
 
 fn millimetres(length: f64) -> f64 {
     to_digits(1e3 * length, 4)
 }
 
-/// 1 − 2ν below which rounding of stresses, 1e-16 over it, leaves more unbalanced than
-/// [`EquilibriumOptions::rounding`](crate::solids::equilibrium::EquilibriumOptions::rounding) allows.
+/// 1 − 2ν below which rounding of stresses, 1e-16 over it, exceeds
+/// [`EquilibriumOptions::rounding`](crate::solids::equilibrium::EquilibriumOptions::rounding).
 const INCOMPRESSIBLE: f64 = 2e-6;
 
 fn remedy(poisson_ratio: f64) -> String {

@@ -1,5 +1,5 @@
-//! Explicit steps of a solid (2.7): central differences, or Runge–Kutta as in the source; of rubber, whose stresses have a
-//! history ([`crate::solids::rubber::explicit`]), central differences.
+//! Explicit steps of a solid (2.7): central differences, or Runge–Kutta as in the source; for rubber, whose stresses
+//! depend on history ([`crate::solids::rubber::explicit`]), central differences.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
@@ -33,9 +33,9 @@ pub enum SolidStepping {
 }
 
 impl SolidStepping {
-    /// The step (s) of a run with rows `interval` (s) apart, and how many make a row. One that follows from
-    /// the stability `limit` (s) is shortened so that a whole number makes an interval; with a given step
-    /// the interval is rounded to whole steps.
+    /// The step (s) of a run with rows `interval` (s) apart, and the number of steps in a row. One that follows from
+    /// the stability `limit` (s) is shortened so that a whole number makes an interval; with a prescribed step the
+    /// interval is rounded to whole steps.
     pub fn divide(self, interval: f64, limit: f64) -> (f64, u64) {
         match self {
             SolidStepping::FractionOfLimit(fraction) => {
@@ -47,7 +47,7 @@ impl SolidStepping {
     }
 }
 
-/// Work done, for tests that pin it.
+/// Work counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SolidWork {
     pub evaluations: u64,
@@ -66,31 +66,32 @@ pub struct ExplicitSolid {
     /// At `time` for Runge–Kutta; half a step before it for central differences.
     pub(crate) rate: Vec<Node>,
     pub(crate) force: Vec<Node>,
-    /// Work of loads and drives, and of damping (≤ 0), on each node since the start, J: by node, so
-    /// that no sum depends on how many threads share the nodes.
+    /// Work of loads and drives, and of damping (≤ 0), on each node since the start, J: by node, so that no sum depends
+    /// on the number of threads.
     pub(crate) external_work: Vec<f64>,
     pub(crate) damping_work: Vec<f64>,
     pub work: SolidWork,
-    /// How often each stage has run.
+    /// Number of runs of each stage.
     pub ran: Counts,
-    /// What acts on it, as planned.
+    /// Planned loads and damping.
     pub(crate) acting: SolidSteps,
     pub(crate) stages: Option<Box<Stages>>,
-    /// Where several threads share its elements.
+    /// `None` for one thread.
     pub(crate) team: Option<Partition>,
-    /// Where it is of rubber; the material of its model is then that of its first instant at rest.
+    /// Forces of rubber; the material of the model is then that of its first instant at rest.
     pub(crate) rubber: Option<Box<RubberForces>>,
 }
 
-/// Vectors as the force loop reads them.
+/// Vectors padded for the force loop.
 pub fn padded(list: Vec<Vec3>) -> Vec<Node> {
     list.into_iter().map(|v| [v[0], v[1], v[2], 0.0]).collect()
 }
 
 impl ExplicitSolid {
-    /// Starts at t = 0 from given displacements and velocities (m, m/s), one for each node.
+    /// A solid at t = 0 with given displacements and velocities (m, m/s), one for each node.
     ///
     /// # Errors
+    ///
     /// A step beyond the stability limit.
     pub fn new(
         model: SolidModel,
@@ -104,9 +105,10 @@ impl ExplicitSolid {
         ExplicitSolid::with_limit(model, method, stepping, limit, displacement, padded(velocity))
     }
 
-    /// As [`ExplicitSolid::new`] where the step limit at the start is known already.
+    /// As [`ExplicitSolid::new`] with a known step limit.
     ///
     /// # Errors
+    ///
     /// A step beyond the stability limit.
     pub fn with_limit(
         model: SolidModel,
@@ -133,7 +135,7 @@ impl ExplicitSolid {
         Ok(solid)
     }
 
-    /// From displacements and velocities at t = 0.
+    /// Sets displacements and velocities at t = 0.
     pub(crate) fn start(&mut self, displacement: Vec<Node>, velocity: Vec<Node>) {
         self.displacement = displacement;
         self.rate = velocity;
@@ -153,7 +155,7 @@ impl ExplicitSolid {
         }
     }
 
-    /// Undeformed and still at t = 0, with a step that is not looked at.
+    /// An undeformed solid at rest at t = 0, with an unchecked step.
     pub fn at_rest(
         model: SolidModel,
         method: ExplicitMethod,
@@ -188,7 +190,7 @@ impl ExplicitSolid {
         self.external_work.iter().sum()
     }
 
-    /// Work of damping since the start, J; ≤ 0 but for a body that damping carries along.
+    /// Work of damping since the start, J; ≤ 0 unless damping moves the body.
     pub fn damping_work(&self) -> f64 {
         self.damping_work.iter().sum()
     }
@@ -237,10 +239,11 @@ impl ExplicitSolid {
         self.ran.add(Stage::Elements, self.elements_a_step() as u64);
     }
 
-    /// One step. `contacts` adds further forces on the nodes, given time and displacements; their
-    /// work is the caller's to book.
+    /// Takes one step. `contacts` adds further forces on the nodes for a time and displacements; their work is booked
+    /// by the caller.
     ///
     /// # Errors
+    ///
     /// A value that is not finite.
     pub fn step(
         &mut self,
@@ -274,7 +277,7 @@ impl ExplicitSolid {
             let (n, i) = (*node as usize, *axis);
             let rate = (profile.value(next) - self.displacement[n][i]) / h;
             let before = self.rate[n][i];
-            // What the drive adds to the other forces moves the node's mass.
+            // The drive adds the force that accelerates the node's mass.
             let drive = self.model.mass[n] * (rate - before) / h - self.force[n][i];
             self.external_work[n] += 0.5 * h * drive * (rate + before);
             self.rate[n][i] = rate;
@@ -296,8 +299,8 @@ impl ExplicitSolid {
         Ok(())
     }
 
-    /// Kick and drift with damping. What is left of the body's rigid motion is damped with the mean of
-    /// the velocities before and after the kick; the rigid motion itself takes the whole kick.
+    /// Kick and drift with damping. Motion relative to the body's rigid motion is damped with the mean of the
+    /// velocities before and after the kick; the rigid motion takes the whole kick.
     fn damped_kick(&mut self, h: f64) {
         self.ran.add(Stage::Damping, 1);
         let SolidModel { per_mass, problem, mass, .. } = &self.model;
@@ -315,7 +318,7 @@ impl ExplicitSolid {
             let rest_before = rigid_before.velocity(place, displacement);
             let rest = rigid.velocity(place, displacement);
             for i in 0..3 {
-                // A driven component is not braked: its course is given.
+                // A driven component is not damped.
                 if per_mass[n][i] != 0.0 {
                     let before = self.rate[n][i] - h * self.force[n][i] * per_mass[n][i];
                     let excess = self.rate[n][i] - rest[i];
@@ -331,8 +334,7 @@ impl ExplicitSolid {
         }
     }
 
-    /// Books what loads and gravity, with their forces at `time`, do in `seconds` at the present
-    /// rates.
+    /// Books the work of loads and gravity, with their forces at `time`, in `seconds` at the present rates.
     pub(crate) fn add_load_work(&mut self, seconds: f64) {
         let SolidModel { problem, mass, .. } = &self.model;
         for load in &problem.loads {
@@ -354,9 +356,9 @@ impl ExplicitSolid {
         }
     }
 
-    /// A value that is not finite spreads to the whole body; a look at every node finds it.
+    /// A non-finite value spreads to the whole body; checking every node finds it.
     fn watch(&self) -> Result<(), SolidError> {
-        // Every few steps: the look costs as much as moving the nodes.
+        // Every few steps: the check costs as much as moving the nodes.
         if !self.steps.is_multiple_of(16) {
             return Ok(());
         }
@@ -371,7 +373,7 @@ impl ExplicitSolid {
         self.velocity_with(|_, _, _| {})
     }
 
-    /// The same under the further forces that [`ExplicitSolid::step`] is given.
+    /// The same under the further forces of [`ExplicitSolid::step`].
     pub fn velocity_with(
         &mut self,
         mut contacts: impl FnMut(f64, &[Node], &mut [Node]),
@@ -390,24 +392,22 @@ impl ExplicitSolid {
             .collect()
     }
 
-    /// Energy at `time`, J. For central differences the kinetic part is ½ v(t−h/2)·m·v(t+h/2),
-    /// which together with the strain energy is what the method keeps.
+    /// Energy at `time`, J. For central differences the kinetic part is ½ v(t−h/2)·m·v(t+h/2), whose sum with the
+    /// strain energy the method conserves.
     pub fn energy(&mut self) -> SolidEnergy {
         self.ledger().energy
     }
 
-    /// Energy held at `time` and the work done until then; leaves the forces of that time in
-    /// [`ExplicitSolid::forces`].
+    /// Stored energy at `time` and the work until then; leaves the forces of that time in [`ExplicitSolid::forces`].
     ///
-    /// Central differences book the work of each step with the mean of the rates before and after
-    /// it, that is half a step late; what is still to come of it is added here, so that the ledger
-    /// of a linear body closes to rounding.
+    /// Central differences book the work of each step with the mean of the rates before and after it, half a step late;
+    /// the missing part is added here, so that the ledger of a linear body closes to rounding.
     pub fn ledger(&mut self) -> SolidLedger {
         self.ledger_with(|_, _, _| {})
     }
 
-    /// The same under the further forces that [`ExplicitSolid::step`] is given. Their work is not in
-    /// it: the balance of the ledger grows by it.
+    /// The same under the further forces of [`ExplicitSolid::step`]. Their work is not included: the balance of the
+    /// ledger grows by it.
     pub fn ledger_with(
         &mut self,
         mut contacts: impl FnMut(f64, &[Node], &mut [Node]),
@@ -445,7 +445,7 @@ impl ExplicitSolid {
         }
     }
 
-    /// Velocities, m/s; those of central differences are of half a step before `time`.
+    /// Velocities, m/s; for central differences half a step before `time`.
     pub fn rates(&self) -> &[Node] {
         &self.rate
     }

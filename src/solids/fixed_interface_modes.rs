@@ -1,10 +1,11 @@
-//! How a housing swings while the race in it stands still: what static shapes under the race's motion leave out.
+//! Modes of a housing with its race fixed: the part that static displacements under the race's motion omit.
 //!
-//! About an equilibrium the bore's nodes that touch hang on the race by their contact springs, P = Σ K n nᵀ. The shapes that follow
-//! the race are orthogonal, under K + P, to all that vanish at it; the motions of the two share mass alone (Craig and Bampton 1968,
-//! the race's four coordinates as the interface). Those with the race at rest are combined of (K + P)⁻¹ M φ for the natural shapes φ
-//! of the housing without contact, ω² M φ = K φ: up to a factor that is φ less the answer to the loads with which the race keeps the nodes
-//! in contact where they are, so that nothing has to be factorised again.
+//! About an equilibrium the contact nodes of the bore are coupled to the race by their contact springs, P = Σ K n nᵀ.
+//! The displacements that follow the race are orthogonal, under K + P, to all that vanish at it; the two share mass
+//! alone (Craig and Bampton 1968, with the race's four coordinates as the interface). Modes with the race fixed are
+//! combinations of (K + P)⁻¹ M φ for the natural modes φ of the housing without contact, ω² M φ = K φ. Up to a factor
+//! that is φ less the response to the loads by which the race holds the contact nodes, so that nothing has to be
+//! factorised again.
 
 use crate::kinematics::vec3::{Vec3, add, dot};
 use crate::solids::bore_equilibrium::BoreSearch;
@@ -16,19 +17,21 @@ use crate::vibrations::quasi_static_limit::{FixedInterfaceMode, HousingMass, hou
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 
-/// Natural shapes of a housing that are made use of.
+/// Choice of natural modes of a housing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Natural {
-    /// So many of the lowest.
+    /// This number of the lowest.
     Lowest(usize),
     /// Up to this frequency, Hz.
     UpTo(f64),
 }
 
-/// Natural shapes of `model`, condensed as `bore`, and the frequency of the first one that is left out, Hz: what swings nearly as fast
-/// as that is told too fast.
+/// Natural modes of `model`, condensed as `bore`, and the frequency of the first omitted one, Hz: frequencies close to
+/// it are overestimated.
 ///
 /// # Errors
+///
+/// Modes that are not found.
 /// Natural shapes that are not found.
 pub fn natural_shapes_of(
     model: &SolidModel,
@@ -41,8 +44,9 @@ pub fn natural_shapes_of(
     }
 }
 
-/// The housing of a search about the last equilibrium of its bore, with its shapes that follow the race, the body of number `race` among
-/// those that take part, and what its `natural` shapes do besides; `damping` of its elements in 1/s.
+/// The housing of a search about the last equilibrium of its bore: displacements that follow the race, the body of
+/// index `race` among the moving ones, and modes with the race fixed from the `natural` modes; `damping` of its
+/// elements in 1/s.
 pub fn swinging_housing(
     search: &BoreSearch,
     race: usize,
@@ -56,7 +60,7 @@ pub fn swinging_housing(
     }
 }
 
-/// Motions with the race at rest, combined of what natural shapes (lumped masses) become under a unit of their own inertia.
+/// Modes with the race fixed, from the responses of natural modes (lumped masses) to their own inertia.
 fn fixed_interface_modes(search: &BoreSearch, natural: &[Mode]) -> Vec<FixedInterfaceMode> {
     if natural.is_empty() {
         return Vec::new();
@@ -89,7 +93,7 @@ fn fixed_interface_modes(search: &BoreSearch, natural: &[Mode]) -> Vec<FixedInte
     all
 }
 
-/// A displacement of all nodes with what the race, which stands still, does against it where nodes touch.
+/// A displacement of all nodes with the response to the forces of the fixed race at the contact nodes.
 fn held_back(search: &BoreSearch, shape: &[Vec3]) -> Vec<Vec3> {
     let bore = search.bore();
     let outward = bore.nodes.iter().map(|node| {

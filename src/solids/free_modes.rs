@@ -1,47 +1,48 @@
-//! Shapes of a free elastic body: natural ones up to a frequency, and beside them its static answers to loads at
-//! chosen coordinates, as far as the natural ones leave these out.
+//! Modes of a free elastic body: natural modes up to a frequency, and static correction modes for loads at chosen
+//! coordinates.
 //!
-//! Both are orthogonal to each other and to the body's rigid motions under its mass. A load at a chosen coordinate is so
-//! answered exactly as long as it is slow; of one at frequency f what is missed is about (f/f_cut)² of the part of the
-//! compliance that the natural shapes left out would have had.
+//! Both are orthogonal to each other and to the rigid motions under the mass. So the response to a slow load at a
+//! chosen coordinate is exact; at frequency f the error is about (f/f_cut)² of the compliance of the omitted natural
+//! modes.
 
 use crate::members::shaft_modes::ShapesError;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Mass and stiffness, and motions without strain that are orthogonal under the mass.
+/// Mass and stiffness, and rigid motions that are orthogonal under the mass.
 pub(crate) struct FreeBody<'m> {
     pub mass: &'m DMatrix<f64>,
     pub stiffness: &'m DMatrix<f64>,
     pub rigid: &'m [DVector<f64>],
 }
 
-/// Of a modal mass of 1 kg each, one a column.
+/// Modes of unit modal mass, one a column.
 pub(crate) struct FreeShapes {
     /// rad/s.
     pub frequencies: Vec<f64>,
     pub shapes: DMatrix<f64>,
-    /// How many of them are natural ones; static answers follow.
+    /// Number of natural modes; static correction modes follow.
     pub natural: usize,
     pub cut: Cut,
 }
 
-/// What the shapes leave out.
+/// The omitted part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// Lowest natural frequency that is not among them, rad/s; none where all are.
+    /// Lowest omitted natural frequency, rad/s; infinite if none.
     pub above: f64,
-    /// Largest part of the static compliance (beside rigid motion) at a hold that lies above.
+    /// Largest fraction of the static compliance (without rigid motion) at an attachment in omitted modes.
     pub share: f64,
 }
 
-/// Static answers that differ by less than this part of themselves from the others are none of their own.
+/// Static responses that differ by less than this fraction from combinations of the others are dropped.
 const DEPENDENT: f64 = 1e-10;
 
 impl FreeBody<'_> {
-    /// Natural shapes below `limit` (rad/s), `most` of them, and the static answers to loads at `rows`.
+    /// Natural modes below `limit` (rad/s), at most `most`, and static correction modes for loads at `rows`.
     ///
     /// # Errors
-    /// A mass that is not positive, a motion without strain that is not among the rigid ones.
+    ///
+    /// A mass that is not positive; a motion without strain that is not rigid.
     pub fn shapes(
         &self,
         limit: f64,
@@ -51,7 +52,7 @@ impl FreeBody<'_> {
         let (frequencies, all) = self.natural()?;
         let kept: usize = frequencies.iter().take(most).filter(|w| **w <= limit).count();
         let left_out = frequencies.len() - kept;
-        // Amplitudes of the natural shapes left out in each static answer.
+        // Amplitudes of the omitted natural modes in each static response.
         let answer = |k: usize, row: usize| {
             all[(row, kept + k)] / (frequencies[kept + k] * frequencies[kept + k])
         };
@@ -81,7 +82,7 @@ impl FreeBody<'_> {
         Ok(FreeShapes { frequencies, shapes, natural: kept, cut: Cut { above, share } })
     }
 
-    /// All natural shapes beside the rigid motions, in the order of their frequencies (rad/s).
+    /// All natural modes without rigid motions, with ascending frequencies (rad/s).
     fn natural(&self) -> Result<(Vec<f64>, DMatrix<f64>), ShapesError> {
         let inertia = |motion: &DVector<f64>| (self.mass * motion).dot(motion);
         let weights: Vec<f64> = self.rigid.iter().map(inertia).collect();
@@ -100,7 +101,7 @@ impl FreeBody<'_> {
         let mut frequencies = Vec::with_capacity(count - first);
         for column in first..count {
             let mut shape = modes.column(column).into_owned();
-            // Rounding leaves some rigid motion in a shape, and its frequency to the square root of its part.
+            // Rounding leaves some rigid motion in a mode.
             for (motion, weight) in self.rigid.iter().zip(&weights) {
                 let part = (self.mass * motion).dot(&shape) / weight;
                 shape -= motion * part;
@@ -117,11 +118,11 @@ impl FreeBody<'_> {
     }
 }
 
-/// The `modes` lowest natural motions of unit modal mass and their frequencies' squares; none where `stiffness` with
-/// `shift` of the mass is not positive.
+/// The `modes` lowest modes of unit modal mass and their squared frequencies; `None` if `stiffness` plus `shift` times
+/// the mass is not positive definite.
 ///
-/// The inverse problem, M x = μ (K + σM) x: its largest values are the lowest frequencies, which rounding touches least; the
-/// shift σ lets rigid motions in.
+/// The inverse problem, M x = μ (K + σM) x: its largest values are the lowest frequencies, which are then least
+/// affected by rounding; the shift σ admits rigid motions.
 pub(crate) fn lowest(
     mass: &DMatrix<f64>,
     stiffness: &DMatrix<f64>,
@@ -147,7 +148,7 @@ pub(crate) fn lowest(
     Some((shapes, squares))
 }
 
-/// Combinations of `answers` (columns of amplitudes of shapes of these frequencies) that are orthogonal under mass and
+/// Combinations of `answers` (columns of amplitudes of modes of these frequencies) that are orthogonal under mass and
 /// stiffness, and their frequencies.
 fn independent(answers: &DMatrix<f64>, frequencies: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
     let mass = answers.transpose() * answers;

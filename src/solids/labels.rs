@@ -1,12 +1,11 @@
-//! What messages call elements and nodes.
+//! Numbers of elements and nodes in messages.
 
-/// Numbers by which a person knows elements and nodes: those of the file that the mesh is from.
-/// Without them both are counted from 1 in the order of the problem.
+/// Numbers of elements and nodes in the mesh file; empty lists count from 1 in the order of the problem.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Labels {
     /// By element, or empty.
     pub elements: Vec<u64>,
-    /// By node, or empty; `None` for a node that the file does not have, put on an edge.
+    /// By node, or empty; `None` for a mid-side node that the file does not have.
     pub nodes: Vec<Option<u64>>,
 }
 
@@ -19,7 +18,7 @@ impl Labels {
         self.nodes.get(index).copied().unwrap_or(Some(index as u64 + 1))
     }
 
-    /// Of the same mesh renumbered: `element` and `node` are the new numbers of the old ones.
+    /// For the renumbered mesh: `element` and `node` are the new numbers of the old ones.
     pub fn renumbered(self, element: &[u32], node: &[u32]) -> Labels {
         let moved = |to: &[u32], from: usize| to[from] as usize;
         let (mut elements, mut nodes) = (self.elements.clone(), self.nodes.clone());
@@ -33,7 +32,7 @@ impl Labels {
     }
 }
 
-/// As it begins a message.
+/// Text at the beginning of a message.
 pub(crate) fn node_text(label: &Option<u64>) -> String {
     match label {
         Some(number) => format!("node {number}"),

@@ -1,4 +1,4 @@
-//! Patterns of force on a bore that a reduced housing answers to statically: what a race puts on it.
+//! Patterns of force on a bore with static correction modes in a reduced housing: the loads of a race.
 
 use crate::assembly::mount::Mount;
 use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBody, StaticSeat};
@@ -15,30 +15,30 @@ use crate::solids::condensation::{CondensedBore, lever};
 use nalgebra::SVector;
 use std::f64::consts::TAU;
 
-/// Directions in which [`pressed`] presses: patches of contact move on by a part of their width from one to the next.
+/// Directions of force in [`pressed`]: contact patches overlap from one to the next.
 const DIRECTIONS: usize = 48;
 
-/// Where along the race, over its width, [`pressed`] presses besides its middle: within it, and with a moment that lifts one end, as a
-/// shaft that bends has it.
+/// Axial positions of the force in [`pressed`], over the width, in addition to the middle: within the race, and with a
+/// moment that lifts one end, as from a bent shaft.
 const LEVERS: [f64; 4] = [-0.25, 0.25, -1.0, 1.0];
 
-/// Loads on the nodes of a bore, N: what its compliance is measured under.
+/// Loads on the nodes of a bore, N, for which its compliance must be accurate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadPatterns {
-    /// These have answers of their own: of a race that shifts, tilts and grows where the bore touches it all round, so that nothing is
-    /// left out where no node lets go; and of the race where a run starts.
+    /// Loads with correction modes of their own: a race that is displaced, tilted and grown in contact all round, so
+    /// that nothing is omitted while all nodes touch; and the race at the start of a run.
     pub own: Vec<Vec<f64>>,
     pub others: Vec<Vec<f64>>,
 }
 
-/// How hard a race may be pressed into its bore, whichever way.
+/// Largest loads on a race, in any direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LargestLoads<'s> {
     /// N.
     pub force: f64,
-    /// That turns it without a force, N·m.
+    /// Pure moment, N·m.
     pub moment: f64,
-    /// Where a run starts: loads that come from elsewhere, and go through levers, are known there only.
+    /// State at the start of a run, whose loads may have unknown levers.
     pub start: Option<&'s BoreState>,
 }
 
@@ -46,12 +46,13 @@ fn in_bore(source: BoreError) -> StaticsError {
     StaticsError::Seat { of: String::new(), source }
 }
 
-/// A race alone in its bore under `load`, looked for from where it was last.
+/// A race alone in its bore under `load`, searched from its last pose.
 ///
-/// A loose race without load stays where it is. Loads that leave it several places get one near the last.
+/// A loose race without load keeps its position; of several positions the nearest is found.
 ///
 /// # Errors
-/// A load that the bore cannot hold.
+///
+/// A load that the bore cannot carry.
 pub fn race_under_load(
     search: &mut BoreSearch,
     fit: &Fit,
@@ -88,11 +89,12 @@ pub fn race_under_load(
     Ok(solution.seats.remove(0))
 }
 
-/// Of a race pressed into the bore by a force in directions all round, with moments and without, turned by nothing but a moment about
-/// axes all round, and as at the start of a run, turned all round; and what they differ by from those of the fit alone. Of a tight
-/// fit the differences are what moves the race.
+/// Loads of a race on its bore: under a force in directions all round, with and without moments, under a pure moment
+/// about axes all round, and as at the start of a run, rotated all round; and their differences from those of the fit
+/// alone, which move the race in a tight fit.
 ///
 /// # Errors
+///
 /// A bore that does not hold the race.
 pub fn pressed(
     bore: &CondensedBore,
@@ -125,7 +127,7 @@ pub fn pressed(
             RaceLoad { force: across([y, z]), moment: across([about_y, about_z]) }
         });
         for load in levered.iter().chain(&turned).chain(&start) {
-            // A race on its rim, or loose under a moment, may have no rest: other samples say what is new of it.
+            // A race on its rim, or loose under a moment, may have no equilibrium: other samples cover it.
             let _ = add(load);
         }
     }
@@ -134,8 +136,8 @@ pub fn pressed(
     Ok(LoadPatterns { own, others })
 }
 
-/// Of a race that shifts, tilts and grows where no node lets go: what (C + 1/k) p = g has for 1 m or 1 rad of each of its coordinates, and
-/// for a growth by 1 m.
+/// Loads in full contact: solutions of (C + 1/k) p = g for 1 m or 1 rad of each coordinate of the race, and for 1 m of
+/// growth.
 fn closed(bore: &CondensedBore, penalty: Penalty) -> Result<Vec<Vec<f64>>, FactorError> {
     let moved = (0..4).flat_map(|axis| bore.nodes.iter().map(move |node| lever(node)[axis]));
     let mut all: Vec<f64> = moved.chain(bore.nodes.iter().map(|_| 1.0)).collect();
@@ -143,14 +145,14 @@ fn closed(bore: &CondensedBore, penalty: Penalty) -> Result<Vec<Vec<f64>>, Facto
     Ok(all.chunks_exact(bore.nodes.len()).map(<[f64]>::to_vec).collect())
 }
 
-/// C + 1/k with C the compliance of the bore and k its contact: what the nodes give way by under pressures, all of them in contact.
+/// C + 1/k with C the compliance of the bore and k its contact: the compliance of all nodes in contact.
 fn all_touching(bore: &CondensedBore, penalty: Penalty) -> Result<DenseFactor, FactorError> {
     let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
     let softness = bore.nodes.iter().map(|node| 1.0 / penalty.of_node(node.area));
     bore.compliance.factor(&everyone, &softness.collect::<Vec<_>>())
 }
 
-/// What natural shapes (frequency in rad/s, displacements outwards) up to a frequency push the race with that they ring against.
+/// Forces on the race by natural modes (frequency in rad/s, outward displacements) up to a frequency.
 fn ringing(
     bore: &CondensedBore,
     penalty: Penalty,
@@ -169,21 +171,22 @@ fn ringing(
     Ok(all.chunks_exact(nodes).map(<[f64]>::to_vec).collect())
 }
 
-/// Natural shapes up to this part of the highest have answers to what they push the race with: by default those up to the frequency of
-/// a ball. Without these a tight bore is stiffer to them than its elements are, by which a blow comes out 1 % off.
+/// Natural modes up to this fraction of the highest have corrections for their forces on the race: by default those up
+/// to the frequency of a ball. Without them a tight bore is too stiff against these modes, an error of 1 % in an
+/// impact.
 const RINGING: f64 = 0.5;
 
-/// Part of the largest energy below which a combination of answers is rounding of the others.
+/// Fraction of the largest energy below which a combination of responses is rounding of the others.
 pub(crate) const NOTHING_NEW: f64 = 1e-10;
 
-/// Patterns of force on the bore that get a static answer.
+/// Patterns of force on the bore with static correction modes.
 pub(crate) struct Patterns {
     pub vectors: Vec<Vec<f64>>,
     pub left_out: f64,
     pub by_patterns: f64,
 }
 
-/// A load and how it moves the bore's nodes beyond natural shapes, m.
+/// A load and its displacement of the bore nodes beyond natural modes, m.
 #[derive(Clone)]
 struct Pattern {
     load: Vec<f64>,
@@ -204,7 +207,7 @@ impl Pattern {
         self.moved.iter_mut().zip(&other.moved).for_each(|(to, u)| *to += factor * u);
     }
 
-    /// Nothing if it is rounding of others.
+    /// `None` if it is rounding of others.
     fn of_unit_energy(mut self) -> Option<Pattern> {
         let energy = self.energy();
         if energy <= NOTHING_NEW {
@@ -215,7 +218,7 @@ impl Pattern {
         Some(self)
     }
 
-    /// Takes away what others, of unit energy, have of it.
+    /// Removes the components along others, of unit energy.
     fn beyond(mut self, others: &[Pattern]) -> Pattern {
         for other in others {
             self.add_scaled(-inner(&other.load, &self.moved), other);
@@ -224,8 +227,9 @@ impl Pattern {
     }
 }
 
-/// Those of `loads` that get answers of their own, and so many of the others, and of what natural shapes push with, that no more than `tolerance` of the compliance under any
-/// of them is left out: one after the other the one that natural shapes and those before leave most of, each by its whole compliance.
+/// Patterns for the `own` loads, and for as many of the others and of the forces of natural modes as are needed for an
+/// omitted compliance of at most `tolerance` under any of them: in each turn the load with the largest omitted part,
+/// relative to its whole compliance.
 pub(crate) fn patterns(
     bore: &CondensedBore,
     penalty: Penalty,
@@ -237,7 +241,7 @@ pub(crate) fn patterns(
     let everyone: Vec<usize> = (0..bore.nodes.len()).collect();
     let shapes: Vec<(f64, Vec<f64>)> =
         natural.iter().map(|(frequency, shape)| (*frequency, at_bore(shape))).collect();
-    // Of unit compliance, contact included; none where nothing gives way.
+    // Of unit compliance with contact; `None` without compliance.
     let pattern = |load: &Vec<f64>| -> Option<Pattern> {
         let mut moved = vec![0.0; load.len()];
         bore.compliance.add_product(&everyone, load, &mut moved);
@@ -271,7 +275,7 @@ pub(crate) fn patterns(
         kept.extend(new.beyond(&kept).of_unit_energy());
     }
     rest = rest.into_iter().map(|pattern| pattern.beyond(&kept)).collect();
-    // Whichever is answered to least comes next.
+    // The least represented load is next.
     let least = |rest: &[Pattern]| {
         let left = rest.iter().map(Pattern::energy).enumerate();
         left.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))

@@ -1,4 +1,4 @@
-//! Memory that statics, modes and condensing of a solid need, from its structure alone.
+//! Memory of statics, modes and condensation of a solid, from its structure alone.
 
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::Sym3;
@@ -10,7 +10,7 @@ use crate::solids::tangent::Unknowns;
 /// Right-hand side, old and new displacements (with fourth components), internal and external forces.
 const NEWTON_VECTORS: usize = 8;
 
-/// Equilibrium of a solid, by however many factorisations.
+/// Equilibrium of a solid, with any number of factorisations.
 pub fn statics(unknowns: &Unknowns) -> Memory {
     let task = Task {
         name: "statics",
@@ -22,9 +22,9 @@ pub fn statics(unknowns: &Unknowns) -> Memory {
     Memory::new(&unknowns.elimination, task)
 }
 
-/// An equilibrium of a solid of rubber, with what its points keep from step to step.
+/// An equilibrium of a solid of rubber, with the history of its points.
 pub fn rubber(model: &RubberModel) -> Memory {
-    // DEV S and its rate, what is carried over, and each Maxwell element, now and in a checkpoint.
+    // DEV S and its rate, the history, and each Maxwell element, now and in a checkpoint.
     let tensors = 2 * (3 + model.problem.material.maxwell.len());
     let task = Task {
         name: "statics",
@@ -50,7 +50,7 @@ pub fn modes(unknowns: &Unknowns, count: usize) -> Memory {
     Memory::new(&unknowns.elimination, task)
 }
 
-/// The lowest `count` modes of a solid that is fixed and has been factorised.
+/// The lowest `count` modes of a factorised solid with supports.
 pub fn modes_of_fixed(unknowns: &Unknowns, count: usize) -> Memory {
     let mut memory = modes(unknowns, count);
     memory.task.name = "modes of the housing";

@@ -9,24 +9,25 @@ use crate::solids::condensed_shaft;
 use crate::solids::condensed_shaft::SolidShaftError;
 use crate::solids::model::{DampedMotion, SolidProblem};
 
-/// Cells of a shaft.
+/// Mesh parameters of a shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaftMesh {
     /// Ten-node elements, or four-node ones as in the source.
     pub order: Order,
-    /// No layer of cells is longer than this along the axis, m.
+    /// Longest layer of cells along the axis, m.
     pub longest_layer: f64,
-    /// A multiple of 8.
+    /// Cells around; a multiple of 8.
     pub around: usize,
-    /// In the ring about the core of the innermost radius.
+    /// Cells in the ring about the core of the innermost radius.
     pub radial: usize,
 }
 
 impl Beam {
-    /// The mesh of its segments between the `ends` of elements (m), one of each segment's elements after the other.
+    /// Mesh of its segments between the `ends` of elements (m), element by element.
     ///
     /// # Errors
-    /// What the generator refuses.
+    ///
+    /// Dimensions refused by the generator.
     pub fn tetrahedral(
         &self,
         mesh: &ShaftMesh,
@@ -58,10 +59,12 @@ impl Beam {
         })
     }
 
-    /// The mesh of its segments as a free solid, with layers of nodes at the places `at` (m from its first end); `None` of a beam.
+    /// Mesh of its segments as a free solid, with layers of nodes at the positions `at` (m from its first end); `None`
+    /// for a beam.
     ///
     /// # Errors
-    /// As [`Beam::matrices`].
+    ///
+    /// See [`Beam::matrices`].
     pub fn solid(&self, at: &[f64]) -> Result<Option<(TetMesh, SolidProblem)>, BeamError> {
         self.check()?;
         let (ends, segments) = self.elements(at)?;

@@ -1,4 +1,4 @@
-//! A flexible solid as plain data, and with everything precomputed.
+//! A flexible solid as plain data, and its model with all constants.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
@@ -17,17 +17,17 @@ use crate::solids::tet4_blocks::Node;
 use crate::solids::{tet4_blocks, tet10_blocks};
 use thiserror::Error;
 
-/// What mass-proportional damping brakes.
+/// Damped part of the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DampedMotion {
     /// All motion (2.7).
     #[default]
     Absolute,
-    /// Motion relative to the body's own mean translation and rotation, for a body that spins.
+    /// Motion relative to the body's own mean translation and rotation, for a rotating body.
     RelativeToRigid,
 }
 
-/// Forces on nodes that grow and fade together.
+/// Proportional forces on nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
     /// Node, force in N at profile value 1.
@@ -35,7 +35,7 @@ pub struct Load {
     pub profile: Profile,
 }
 
-/// One displacement component whose course is given.
+/// A prescribed displacement component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prescribed {
     pub node: u32,
@@ -48,7 +48,7 @@ pub struct Prescribed {
 /// A solid of one material, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidProblem {
-    /// Undeformed places, m.
+    /// Undeformed positions, m.
     pub nodes: Vec<Vec3>,
     pub elements: Elements,
     pub material: LinearElastic,
@@ -57,14 +57,14 @@ pub struct SolidProblem {
     /// Damping force per mass and velocity, 1/s: the coefficient of (2.7) divided by the mass.
     pub damping: f64,
     pub damped_motion: DampedMotion,
-    /// Held or moved displacement components.
+    /// Fixed or moved displacement components.
     pub prescribed: Vec<Prescribed>,
     pub loads: Vec<Load>,
     /// m/s².
     pub gravity: Vec3,
 }
 
-/// What cannot be set up or went wrong; elements and nodes by their [`Labels`], `at` undeformed, m.
+/// Errors of a solid; elements and nodes by their [`Labels`], `at` undeformed, m.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolidError {
     #[error("element {element} at {}: {source}; check the mesh", place(at))]
@@ -75,7 +75,10 @@ pub enum SolidError {
     Damping(f64),
     #[error("node {node} does not exist: the mesh has {count} nodes")]
     NoSuchNode { node: u32, count: usize },
-    #[error("{} belongs to no element, so it has no mass; drop it from the mesh", node_text(node))]
+    #[error(
+        "{} belongs to no element, so it has no mass; remove it from the mesh",
+        node_text(node)
+    )]
     NoMass { node: Option<u64> },
     #[error("axis {axis} of node {node} is prescribed; axes are 0, 1 and 2")]
     NoSuchAxis { node: u32, axis: usize },
@@ -95,7 +98,7 @@ pub enum SolidError {
     )]
     NotFinite { node: Option<u64>, at: Vec3, time: f64, step: u64 },
     #[error(
-        "element {element} at {} is turned inside out at t = {} s, step {step} (volume ratio {ratio:.3})",
+         "element {element} at {} is inverted at t = {} s, step {step} (volume ratio {ratio:.3})",
         place(at),
         rounded(*time)
     )]
@@ -108,18 +111,18 @@ pub(crate) fn place(at: &Vec3) -> String {
     format!("({:.6}, {:.6}, {:.6}) m", at[0], at[1], at[2])
 }
 
-/// Elements as the force loop reads them.
+/// Elements in the blocks of the force loop.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Blocks {
     Linear(Vec<tet4_blocks::Block>),
     Quadratic(Vec<tet10_blocks::Block>),
 }
 
-/// A problem with everything precomputed.
+/// A problem with all constants.
 #[derive(Clone, Debug)]
 pub struct SolidModel {
     pub problem: SolidProblem,
-    /// What messages call elements and nodes.
+    /// Numbers of elements and nodes in messages.
     pub labels: Labels,
     pub blocks: Blocks,
     /// Lumped mass of each node, kg.
@@ -147,10 +150,11 @@ impl SolidModel {
         SolidModel::labelled(problem, Labels::default())
     }
 
-    /// As [`SolidModel::new`], with names for elements and nodes.
+    /// As [`SolidModel::new`], with numbers for elements and nodes.
     ///
     /// # Errors
-    /// As there.
+    ///
+    /// The same.
     pub fn labelled(problem: SolidProblem, labels: Labels) -> Result<SolidModel, SolidError> {
         if !(problem.density > 0.0 && problem.density.is_finite()) {
             return Err(SolidError::Density(problem.density));
@@ -225,7 +229,7 @@ impl SolidModel {
         SolidError::NotFinite { node: self.labels.node(node), at, time, step }
     }
 
-    /// An element turned inside out, with its volume ratio.
+    /// An inverted element, with its volume ratio.
     pub fn inverted(&self, element: usize, ratio: f64, time: f64, step: u64) -> SolidError {
         let at = centre(&self.problem, element);
         SolidError::Inverted { element: self.labels.element(element), at, ratio, time, step }
@@ -244,8 +248,8 @@ impl SolidModel {
         }
     }
 
-    /// Adds loads and gravity at time `t`, N, gravity by the lumped masses: all nodes of a free
-    /// body then fall alike.
+    /// Adds loads and gravity at time `t`, N, gravity by the lumped masses: all nodes of a free body then have the same
+    /// acceleration.
     pub fn add_external_forces(
         &self,
         steps: SolidSteps,
@@ -259,10 +263,9 @@ impl SolidModel {
         }
     }
 
-    /// Adds loads and gravity at time `t`, N, gravity as ∫Nρg dV: what equilibrium needs. For
-    /// four-node elements this is the same as by lumped masses. For ten-node elements lumped
-    /// masses are positive everywhere, as explicit steps need them, but as a load they would cost an
-    /// order of convergence; the consistent load pulls corners upwards.
+    /// Adds loads and gravity at time `t`, N, gravity as ∫Nρg dV, as equilibrium requires. For four-node elements this
+    /// is the same as by lumped masses. For ten-node elements lumped masses are positive everywhere, as explicit steps
+    /// require, but as a load they would cost an order of convergence; the consistent load acts upwards at corners.
     pub fn add_static_forces(&self, t: f64, forces: &mut [Node], ran: &mut Counts) {
         let steps = self.acting();
         self.add_loads(steps, t, forces, ran);
@@ -271,7 +274,7 @@ impl SolidModel {
         }
     }
 
-    /// Of [`SolidModel::add_static_forces`] what gravity does, N.
+    /// Part of gravity in [`SolidModel::add_static_forces`], N.
     pub fn add_weight(&self, forces: &mut [Node], ran: &mut Counts) {
         match &self.problem.elements {
             Elements::Linear(_) => {
@@ -290,7 +293,7 @@ impl SolidModel {
         }
     }
 
-    /// What its plan lets act on it.
+    /// Planned loads and damping.
     pub fn acting(&self) -> SolidSteps {
         SolidSteps::new(&self.problem, &Method::Explicit)
     }
@@ -327,7 +330,7 @@ impl SolidModel {
         }
     }
 
-    /// The same element by element with the scalar law, as the oracle of the blocks.
+    /// The same element by element with the scalar law: oracle of the blocks.
     pub fn add_internal_forces_plain(&self, displacement: &[Node], forces: &mut [Node]) {
         let material = self.problem.material;
         let law = |strain: &_| material.second_piola_kirchhoff(strain);

@@ -1,5 +1,4 @@
-//! Lowest natural frequencies and mode shapes of a solid: Lanczos' method on the shifted and
-//! inverted problem.
+//! Lowest natural frequencies and modes of a solid: Lanczos' method on the shifted and inverted problem.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
@@ -14,12 +13,12 @@ use std::f64::consts::TAU;
 use std::iter::zip;
 use thiserror::Error;
 
-/// Which modes are looked for.
+/// Choice of modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wanted {
-    /// So many of the lowest, those of no frequency included.
+    /// This number of the lowest, rigid motions included.
     Lowest(usize),
-    /// All up to a frequency (Hz), at most so many, and the first one beyond.
+    /// All up to a frequency (Hz), at most `most`, and the first one beyond.
     UpTo { frequency: f64, most: usize },
 }
 
@@ -56,9 +55,9 @@ pub enum ModeError {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// Hz; what rounding leaves of zero for a rigid motion.
+    /// Hz; zero but for rounding for a rigid motion.
     pub frequency: f64,
-    /// Displacements of all nodes; scaled so that xᵀ M x = 1 kg.
+    /// Displacement of all nodes, scaled to xᵀ M x = 1 kg.
     pub shape: Vec<Vec3>,
     /// ‖K x − λ M x‖ over ‖(λ − shift) M x‖.
     pub residual: f64,
@@ -66,48 +65,48 @@ pub struct Mode {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// From the lowest frequency on.
+    /// Ascending by frequency.
     pub modes: Vec<Mode>,
     pub unknowns: usize,
     /// Solves with the factorised stiffness.
     pub solves: usize,
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub ran: Counts,
 }
 
-/// Vectors that are carried on at once: pairs of equal frequencies and the six rigid motions are
-/// then found together, not one after the other by rounding.
+/// Block size: pairs of equal frequencies and the six rigid motions are then found together, instead of one after the
+/// other by rounding.
 pub const BLOCK: usize = 6;
 
-/// Part of a value by which it changes from block to block while its residual is far too large.
+/// Relative change of a value from block to block below which its residual is evaluated.
 const STILL: f64 = 1e-8;
 
-/// Solves that usually settle `count` modes.
+/// Usual number of solves for `count` modes.
 pub fn usual_solves(count: usize) -> usize {
     4 * count + 38
 }
 
 /// Lowest modes about the undeformed state.
 ///
-/// The shift is negative, so that the stiffness of a free body can be factorised too: minus the
-/// square of the lowest angular frequency that a body of this size can have, about a tenth of shear
-/// wave speed over size.
+/// The shift is negative, so that the stiffness of a free body can be factorised too: minus the square of the lowest
+/// angular frequency that a body of this size can have, about a tenth of shear wave speed over size.
 ///
 /// # Errors
+///
 /// More modes than unknowns, a mesh in parts without stiffness, no convergence.
 pub fn modes(model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeError> {
     modes_over(model, &Unknowns::new(model), options)
 }
 
-/// Numbers that trial vectors may take beyond those that large bodies have room for, half a gigabyte with their
-/// images, and the most trial vectors then.
+/// Largest number of entries of additional trial vectors, half a gigabyte with their images.
 const FREE_TRIALS: usize = 30_000_000;
 const MOST_TRIALS: usize = 400;
 
-/// The same over unknowns that are numbered already.
+/// The same over given unknowns.
 ///
 /// # Errors
-/// As [`modes`].
+///
+/// See [`modes`].
 pub fn modes_over(
     model: &SolidModel,
     unknowns: &Unknowns,
@@ -125,10 +124,11 @@ pub fn modes_over(
     )
 }
 
-/// The same of a solid that is held, by the factors that its undeformed stiffness has already.
+/// The same for a solid with supports, with the factors of its undeformed stiffness.
 ///
 /// # Errors
-/// As [`modes`].
+///
+/// See [`modes`].
 pub fn modes_of_held(
     model: &SolidModel,
     unknowns: &Unknowns,
@@ -185,18 +185,19 @@ fn search(
         if let Wanted::Lowest(wanted) = options.wanted {
             count = wanted;
         }
-        // Short thick bodies have many modes close to each other; a small one may take more trials.
+        // Short thick bodies have many close modes; a small one may take more trials.
         let most =
             |count: usize| (4 * count + 60).max((FREE_TRIALS / size).min(MOST_TRIALS)).min(size);
-        // A look costs the cube of the basis, a block little: large ones are looked at each time they have grown by a part.
+        // A Rayleigh–Ritz step costs the cube of the basis, a block little: large bases take one after a growth by a
+        // fraction.
         if krylov.basis.len() < looked + looked / 16 && krylov.grow(most(count)) {
             continue;
         }
         looked = krylov.basis.len();
-        // Residuals are looked at once the values stand still: these settle twice as fast as shapes.
+        // Residuals are evaluated once the values are constant: these converge twice as fast as the vectors.
         let mut values = krylov.largest();
         if let Wanted::UpTo { frequency, most } = options.wanted {
-            // They come down as the space grows.
+            // Values fall as the space grows.
             let limit = (TAU * frequency).powi(2);
             let within = values.iter().filter(|&&inverse| shift + 1.0 / inverse <= limit).count();
             if within > most {
@@ -270,7 +271,7 @@ fn spread(unknowns: &Unknowns, vector: &[f64]) -> Vec<Vec3> {
 }
 
 impl Shifted<'_> {
-    /// With K − shift M, of which (K − λ M) x is all but (λ − shift) M x.
+    /// With K − shift M: (K − λ M) x differs by (λ − shift) M x.
     fn residual(&self, vector: &[f64], value: f64) -> f64 {
         let beyond = value - self.shift;
         let mut force = vec![0.0; vector.len()];
@@ -286,7 +287,7 @@ impl Shifted<'_> {
     }
 }
 
-/// The space that the powers of the inverse span, orthonormal under the mass.
+/// The Krylov space of the inverse, orthonormal under the mass.
 struct Krylov<'a> {
     masses: &'a SymmetricMatrix,
     factor: &'a Factor,
@@ -298,7 +299,7 @@ struct Krylov<'a> {
     solves: usize,
 }
 
-/// In eight sums side by side, which a processor adds at once.
+/// Eight parallel sums, for the processor's vector units.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
@@ -311,11 +312,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// Entries of vectors that are worked on before the next ones: those of a block and of one vector of the basis fit into the nearest
-/// cache.
+/// Entries of vectors processed at a time: those of a block and of one basis vector fit into the nearest cache.
 const PART: usize = 512;
 
-/// Each of `basis` times each of `others`.
+/// Products of each of `basis` with each of `others`.
 fn products(basis: &[Vec<f64>], others: &[Vec<f64>]) -> DMatrix<f64> {
     let mut sums = DMatrix::zeros(basis.len(), others.len());
     let size = others.first().map_or(0, Vec::len);
@@ -329,7 +329,7 @@ fn products(basis: &[Vec<f64>], others: &[Vec<f64>]) -> DMatrix<f64> {
     sums
 }
 
-/// Takes away from each of `others` its shares of `basis`.
+/// Subtracts from each of `others` its components along `basis`.
 fn take_away(basis: &[Vec<f64>], shares: &DMatrix<f64>, others: &mut [Vec<f64>]) {
     let size = others.first().map_or(0, Vec::len);
     for part in (0..size).step_by(PART).map(|first| first..(first + PART).min(size)) {
@@ -371,8 +371,8 @@ impl<'a> Krylov<'a> {
         self.take(vectors);
     }
 
-    /// Adds what is new in some vectors; whether there was anything new. One pass through the factors, and one through the basis
-    /// for each thing that is asked of it, serve them all.
+    /// Adds the new directions of some vectors; returns whether there were any. One pass through the factors, and one
+    /// through the basis for each operation, serve all of them.
     fn take(&mut self, vectors: Vec<Vec<f64>>) -> bool {
         let (size, known) = (self.masses.size(), self.basis.len());
         let (vectors, momenta) = self.orthonormal(vectors);
@@ -408,7 +408,7 @@ impl<'a> Krylov<'a> {
         vectors.iter().map(of).collect()
     }
 
-    /// What is new in some vectors, orthonormal under the mass, and its momenta.
+    /// New directions of some vectors, orthonormal under the mass, and their momenta.
     fn orthonormal(&self, mut vectors: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let mut momenta = self.momenta(&vectors);
         // Twice is enough (Kahan, Parlett).
@@ -436,7 +436,7 @@ impl<'a> Krylov<'a> {
         (vectors, momenta)
     }
 
-    /// One more block; whether the space grew.
+    /// Adds a block; returns whether the space grew.
     fn grow(&mut self, most: usize) -> bool {
         let mut images = std::mem::take(&mut self.images);
         images.truncate(most - self.basis.len().min(most));

@@ -1,16 +1,16 @@
-//! A linear housing reduced to some shapes: its natural ones up to a frequency, and its static answers to what acts on
-//! it besides.
+//! A linear housing reduced to component modes: natural modes up to a frequency, and static correction modes for its
+//! loads.
 //!
-//! With natural shapes φ_k (φᵀMφ = 1) and forces f_j, each a pattern of pressure on the bore, the weight or a load, the
-//! basis is φ and ψ_j = K⁻¹f_j − Σ φ_k φ_kᵀf_j/ω_k², what the natural shapes leave of the static answer (residual
-//! attachment shapes, MacNeal 1971, Rubin 1975). Rayleigh and Ritz over both: natural shapes stay as they are, since ψ is
-//! orthogonal to them under M and K, and the ψ combine among themselves into shapes of higher frequencies. What comes
-//! out is diagonal, free of coupled masses, and statically exact for every f_j. Interface shapes with fixed-interface modes
-//! (Craig and Bampton) span no more, and would need an interface of few coordinates first.
+//! With natural modes φ_k (φᵀMφ = 1) and forces f_j, each a pattern of pressure on the bore, the weight or a load, the
+//! basis is φ and ψ_j = K⁻¹f_j − Σ φ_k φ_kᵀf_j/ω_k², the part of the static response beyond the natural modes (residual
+//! attachment modes, MacNeal 1971, Rubin 1975). The Rayleigh–Ritz method over both leaves natural modes unchanged,
+//! since ψ is orthogonal to them under M and K, and combines the ψ into modes of higher frequencies. The result is
+//! diagonal, without coupled masses, and statically exact for every f_j. Interface modes with fixed-interface modes
+//! (Craig and Bampton) span the same space, and need an interface of few coordinates first.
 //!
-//! Patterns are loads that a race puts on its bore in all directions ([`crate::solids::load_patterns::pressed`]), and what natural shapes push it with
-//! that ring against it. So many are kept that under none of them more than a given part of the compliance of bore and contact is
-//! left out. The masses are the lumped ones, as of explicit steps.
+//! Patterns are loads of a race on its bore in all directions ([`crate::solids::load_patterns::pressed`]), and forces
+//! of natural modes on the race. Their number is such that under none of them more than a given fraction of the
+//! compliance of bore and contact is omitted. Masses are lumped, as in explicit steps.
 
 use crate::assembly::mount::Mount;
 use crate::assembly::plan::counts::Counts;
@@ -33,13 +33,13 @@ use thiserror::Error;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReduceOptions {
-    /// Natural shapes up to this frequency are kept, Hz.
+    /// Highest natural frequency kept, Hz.
     pub modes_to: f64,
-    /// Part of the compliance under given loads that may be left out.
+    /// Largest fraction of the compliance omitted under given loads.
     pub left_out: f64,
 }
 
-/// Part of the compliance that is left out where nothing else is asked for.
+/// Default of this fraction.
 pub const LEFT_OUT: f64 = 1e-4;
 
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -48,40 +48,41 @@ pub enum ReduceError {
     Modes(#[from] ModeError),
     #[error(transparent)]
     Bore(#[from] FactorError),
-    #[error("natural shapes up to {frequency} Hz are asked for; that must be positive and finite")]
+    #[error("the highest natural frequency is {frequency} Hz; it must be positive and finite")]
     Frequency { frequency: f64 },
     #[error(
-        "the housing has more than {most} natural shapes below {frequency:.4e} Hz: a reduced body has some dozens; \
+        "the housing has more than {most} natural modes below {frequency:.4e} Hz: a reduced body has some dozens; \
          ask for a lower frequency (housing.modes_to)"
     )]
     TooMany { most: usize, frequency: f64 },
 }
 
-/// What was kept and what is cut off.
+/// The kept and the omitted part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutOff {
-    /// Natural shapes, patterns of the bore, and answers to weight and loads that are kept.
+    /// Number of natural modes, patterns of the bore, and responses to weight and loads.
     pub natural: usize,
     pub patterns: usize,
     pub own: usize,
-    /// Asked for, the lowest natural frequency, and the lowest one left out, Hz.
+    /// Requested frequency, lowest natural frequency, and lowest omitted one, Hz.
     pub modes_to: f64,
     pub lowest: f64,
     pub first_left_out: f64,
-    /// Of the stiffest shape, Hz.
+    /// Highest frequency, Hz.
     pub highest: f64,
-    /// Largest part of the compliance of housing and contact under the given loads that no shape has. To first order the
-    /// race gives way by as much less; pressures that settle anew make it some times that (ten, measured, at most).
+    /// Largest fraction of the compliance of housing and contact under the given loads that is omitted. To first order
+    /// the displacement of the race is too small by as much; a new distribution of pressure multiplies it (by at most
+    /// ten, as measured).
     pub static_left_out: f64,
-    /// Largest part of it that only patterns have: what follows without natural shapes.
+    /// Largest fraction in patterns alone, without inertia of natural modes.
     pub by_patterns: f64,
-    /// Nodes of the bore that can touch.
+    /// Bore nodes of possible contact.
     pub nodes: usize,
 }
 
 impl CutOff {
-    /// Part of the displacement that goes wrong at a frequency (Hz) because natural shapes beyond the first one left
-    /// out follow by patterns: at most their part of the compliance, grown as a swing of that frequency grows.
+    /// Relative error of the displacement at a frequency (Hz) because omitted natural modes are represented by
+    /// patterns: at most their fraction of the compliance, amplified as an oscillation of that frequency.
     pub fn dynamic_error(&self, frequency: f64) -> f64 {
         let square = (frequency / self.first_left_out).powi(2);
         if square < 1.0 {
@@ -92,17 +93,17 @@ impl CutOff {
     }
 }
 
-/// A housing in shapes.
+/// A housing in component modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
     pub solid: ReducedSolid,
-    /// Displacements of all nodes for a unit of each shape.
+    /// Displacements of all nodes per unit of each mode.
     pub shapes: Vec<Vec<Vec3>>,
     pub cut_off: CutOff,
 }
 
 impl Reduction {
-    /// Displacements of all nodes where the shapes have gone so far (m), m.
+    /// Displacements of all nodes for modal coordinates (m), m.
     pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
         let nodes = self.shapes.first().map_or(0, Vec::len);
         let mut sum = vec![[0.0; 3]; nodes];
@@ -114,7 +115,7 @@ impl Reduction {
         sum
     }
 
-    /// Outward displacement of each node of the bore under outward unit forces on each, as the shapes have it, m/N.
+    /// Outward displacement of each bore node under outward unit forces on each, by the modes, m/N.
     pub fn compliance(&self) -> DenseSymmetric {
         let surface = &self.solid.surfaces[0];
         let count = surface.nodes.len();
@@ -128,7 +129,7 @@ impl Reduction {
         DenseSymmetric::new(count, values).0
     }
 
-    /// Outward displacement of each node of the bore under weight and loads at t = 0, m.
+    /// Outward displacement of each bore node under weight and loads at t = 0, m.
     pub fn own(&self) -> Vec<f64> {
         let mut own = vec![0.0; self.solid.surfaces[0].nodes.len()];
         let gone = self.solid.rest(&own_forces(&self.solid, 0.0));
@@ -136,7 +137,7 @@ impl Reduction {
         own
     }
 
-    /// Where the shapes rest under outward loads on the bore's nodes (N), weight and loads at t = 0, m.
+    /// Modal coordinates in equilibrium under outward loads on the bore nodes (N), weight and loads at t = 0, m.
     pub fn rest(&self, loads: &[f64]) -> Vec<f64> {
         let mut forces = own_forces(&self.solid, 0.0);
         let surface = &self.solid.surfaces[0];
@@ -146,8 +147,8 @@ impl Reduction {
         self.solid.rest(&forces)
     }
 
-    /// By how much each node of the bore is farther from the race than motions along normals make it where a search left both, m: of
-    /// its own normal alone, as shapes move it.
+    /// Additional gap of each bore node compared with displacements along normals, for the last state of a search, m:
+    /// the node moves along its own normal alone, as in the modes.
     pub fn beyond_normals(&self, bore: &CondensedBore, state: &BoreState) -> Vec<f64> {
         let surface = &self.solid.surfaces[0];
         let mut outward = vec![0.0; surface.nodes.len()];
@@ -156,7 +157,7 @@ impl Reduction {
         beyond_normals(bore, moved, &state.pose).collect()
     }
 
-    /// The race of `mount` in the bore.
+    /// The housing fit of a race on `mount`.
     pub fn seat(
         &self,
         bore: &CondensedBore,
@@ -182,7 +183,7 @@ impl Reduction {
     }
 }
 
-/// Forces of weight and loads on the shapes at time `t`, N.
+/// Modal forces of weight and loads at time `t`, N.
 fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
     let mut forces = solid.weight.clone();
     for load in &solid.loads {
@@ -192,17 +193,18 @@ fn own_forces(solid: &ReducedSolid, t: f64) -> Vec<f64> {
     forces
 }
 
-/// The most natural shapes that are kept.
+/// Largest number of natural modes.
 const MOST: usize = 400;
-/// Residual of natural shapes: their frequencies are known to its square, and shapes stay as orthogonal.
+/// Residual of natural modes: their frequencies are accurate to its square, and their orthogonality to it.
 const RESIDUAL: f64 = 1e-7;
-/// Of shapes that are combined once more.
+/// Residual of modes that are combined again.
 const ROUGH_RESIDUAL: f64 = 1e-4;
 
-/// Natural shapes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
+/// Natural modes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
 ///
 /// # Errors
-/// More than some hundred shapes; what [`CondensedBore::modes`] finds wrong.
+///
+/// More than some hundred modes; those of [`CondensedBore::modes`].
 pub fn natural_shapes(
     model: &SolidModel,
     bore: &CondensedBore,
@@ -218,10 +220,12 @@ pub fn natural_shapes(
     })
 }
 
-/// The lowest natural shapes (lumped masses), so many, and the frequency of the first one beyond, Hz; their frequencies to 1e-8.
+/// The lowest natural modes (lumped masses), with frequencies accurate to 1e-8, and the frequency of the first one
+/// beyond, Hz.
 ///
 /// # Errors
-/// What [`CondensedBore::modes`] finds wrong.
+///
+/// Those of [`CondensedBore::modes`].
 pub fn lowest_shapes(
     model: &SolidModel,
     bore: &CondensedBore,
@@ -231,7 +235,7 @@ pub fn lowest_shapes(
     Ok(natural(model, bore, wanted, ROUGH_RESIDUAL)?)
 }
 
-/// All but the last one of what is wanted, and the frequency of that, Hz; infinite where there is nothing beyond.
+/// All but the last of the requested modes, and the frequency of that, Hz; infinite if there is none.
 fn natural(
     model: &SolidModel,
     bore: &CondensedBore,
@@ -250,16 +254,17 @@ fn natural(
     Ok((modes, next.map_or(f64::INFINITY, |mode| mode.frequency)))
 }
 
-/// A force on the solid and what its natural shapes leave of the static answer.
+/// A force on the solid and its static response beyond natural modes.
 struct Answer {
     forces: Vec<(u32, Vec3)>,
     shape: Vec<Vec3>,
 }
 
-/// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`, with answers to `loads`, see
+/// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`, with static corrections for `loads`, see
 /// [`crate::solids::load_patterns::pressed`].
 ///
 /// # Errors
+///
 /// See [`ReduceError`].
 pub fn reduce(
     model: &SolidModel,
@@ -346,7 +351,7 @@ pub fn reduce(
     Ok(Reduction { solid, shapes, cut_off })
 }
 
-/// What forces do along a displacement, J.
+/// Work of forces along a displacement, J.
 fn work(forces: &[(u32, Vec3)], displacement: &[Vec3]) -> f64 {
     forces.iter().map(|(node, force)| dot(*force, displacement[*node as usize])).sum()
 }
@@ -369,7 +374,7 @@ fn own_loads(model: &SolidModel) -> Vec<(NodalForces, Option<Profile>)> {
     own
 }
 
-/// Frequencies (rad/s, ascending) and shapes of unit mass that the answers span.
+/// Frequencies (rad/s, ascending) and modes of unit modal mass spanned by the responses.
 fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {
     let size = answers.len();
     if size == 0 {

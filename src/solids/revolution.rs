@@ -1,4 +1,4 @@
-//! Rigid motions and masses of a solid, and whether it is one of revolution about X.
+//! Rigid motions and masses of a solid, and tests of axisymmetry about X.
 
 use crate::elements::{tet4::Tet4, tet10};
 use crate::kinematics::vec3::{Vec3, cross, sub};
@@ -8,30 +8,30 @@ use crate::solids::free_modes::lowest;
 use crate::solids::model::{SolidProblem, corners};
 use nalgebra::{DMatrix, DVector};
 
-/// Parts by which inertia and stiffness may differ around: what coarse meshes of round bodies do.
+/// Largest relative difference of inertia and stiffness around: that of coarse meshes of round bodies.
 const ROUND: f64 = 1e-2;
-/// Part of its radius by which a section's centre may lie beside the axis.
+/// Largest eccentricity of a section's centre, in radii.
 pub(crate) const CENTRED: f64 = 1e-2;
 pub(crate) const AXES: [Vec3; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 pub(crate) const NONE: Vec3 = [0.0; 3];
 
-/// Displacements of all nodes of a body that moves and turns about `origin`.
+/// Displacements of all nodes of a body that translates and rotates about `origin`.
 pub(crate) fn rigid(nodes: &[Vec3], origin: Vec3, [velocity, spin]: [Vec3; 2]) -> DVector<f64> {
     DVector::from_fn(3 * nodes.len(), |row, _| {
         velocity[row % 3] + cross(spin, sub(nodes[row / 3], origin))[row % 3]
     })
 }
 
-/// The centre of mass of a body whose mass is spread as that of one of revolution about X.
+/// Centre of mass of a body whose mass is axisymmetric about X.
 pub(crate) fn centre_of_round(problem: &SolidProblem) -> Result<Vec3, SolidShaftError> {
     let motions = AXES.map(|axis| [[axis, NONE], [NONE, axis]]).into_iter().flatten();
     let motions: Vec<DVector<f64>> =
         motions.map(|motion| rigid(&problem.nodes, NONE, motion)).collect();
     let motions = DMatrix::from_columns(&motions);
-    // Over shift and turn along X, Y and Z.
+    // Over translation and rotation along X, Y and Z.
     let inertia = motions.tr_mul(&momenta(problem, &motions));
     let mass = inertia[(0, 0)];
-    // Momentum along Y of a turn about X is −z, and so on round.
+    // The momentum along Y of a rotation about X is −z, and cyclically.
     let centre = [inertia[(4, 3)], inertia[(0, 5)], inertia[(2, 1)]].map(|moment| -moment / mass);
     // ∫ρ(y² − z²), 2∫ρyz and ∫ρ(y² + z²) about the axis through the centre.
     let [_, y, z] = centre;
@@ -46,13 +46,13 @@ pub(crate) fn centre_of_round(problem: &SolidProblem) -> Result<Vec3, SolidShaft
     Ok(centre)
 }
 
-/// Fields of a component that lie side by side while the masses of a pair of nodes go by once for all of them.
+/// Number of fields of a component processed for each pair of nodes.
 const BESIDE: usize = 16;
 
 /// Consistent masses times displacements.
 pub(crate) fn momenta(problem: &SolidProblem, fields: &DMatrix<f64>) -> DMatrix<f64> {
     let SolidProblem { nodes, density, elements, .. } = problem;
-    // Of each element, row by row.
+    // Masses of each element, row by row.
     let mut shares: Vec<f64> = Vec::new();
     match elements {
         Elements::Linear(list) => {
@@ -91,7 +91,7 @@ pub(crate) fn momenta(problem: &SolidProblem, fields: &DMatrix<f64>) -> DMatrix<
     momenta
 }
 
-/// A shaft whose two planes differ.
+/// Refuses a shaft whose two planes differ.
 pub(crate) fn refuse_unlike(
     mass_y: &DMatrix<f64>,
     stiffness_y: &DMatrix<f64>,

@@ -1,11 +1,11 @@
-//! The rigid part of a body's motion, which damping may leave alone.
+//! Rigid part of a body's motion, which damping may leave out.
 
 use crate::kinematics::vec3::{Vec3, add, cross, sub};
 use crate::solids::model::{DampedMotion, SolidProblem};
 use crate::solids::tet4_blocks::Node;
 use nalgebra::{Matrix3, Vector3};
 
-/// A body's mean motion: that of a rigid body with the same momenta.
+/// Mean motion of a body: that of a rigid body with the same momenta.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RigidMotion {
     centre: Vec3,
@@ -20,7 +20,7 @@ impl RigidMotion {
     }
 }
 
-/// The motion that damping leaves alone; none in an absolute frame.
+/// The undamped motion; zero for absolute damping.
 pub fn rigid_motion(
     problem: &SolidProblem,
     mass: &[f64],

@@ -7,7 +7,7 @@ use crate::solids::rigid_motion::{RigidMotion, rigid_motion};
 use crate::solids::rubber::tet_forces::History;
 use crate::solids::tet4_blocks::Node;
 
-/// Room for the stages of Runge–Kutta.
+/// Working memory of the stages.
 pub(crate) struct Stages {
     displacement: Vec<Node>,
     rate: Vec<Node>,
@@ -51,7 +51,7 @@ impl ExplicitSolid {
                 let rest = rigid.velocity(problem.nodes[n], self.displacement[n]);
                 for i in 0..3 {
                     let rate = self.rate[n][i];
-                    // A driven component is not braked: its course is given.
+                    // A driven component is not damped.
                     let mut acceleration = 0.0;
                     if per_mass[n][i] != 0.0 {
                         let brake = problem.damping * (rate - rest[i]);
@@ -64,7 +64,7 @@ impl ExplicitSolid {
                     self.rate[n][i] = stages.rate[n][i] + ahead * h * acceleration;
                 }
             }
-            // Drives: what they add to the other forces at this stage.
+            // Forces that drives add at this stage.
             for Prescribed { node, axis, profile } in &problem.prescribed {
                 let (n, i) = (*node as usize, *axis);
                 let drive = mass[n] * profile.acceleration(self.time) - self.force[n][i];

@@ -1,6 +1,5 @@
-//! The step that explicit methods can take: from the highest frequency of the whole body, found by
-//! Lanczos' power iteration, or a bound on it where that does not settle; and the element with the
-//! highest frequency of its own.
+//! Stability limit of explicit steps: from the highest frequency of the whole body by Lanczos' power iteration, or a
+//! bound on it if that does not converge; and the element with the highest frequency of its own.
 
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{self, Tet10};
@@ -10,35 +9,33 @@ use crate::solids::explicit::ExplicitMethod;
 use crate::solids::model::{SolidModel, centre, corners};
 use crate::solids::tet4_blocks::Node;
 
-/// Where the step of an explicit method ends.
+/// Stability limit of an explicit method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidStepLimit {
     /// Largest stable step, s.
     pub step: f64,
     /// Highest angular frequency of the body, rad/s.
     pub frequency: f64,
-    /// The iteration did not settle: `frequency` is a bound that no frequency of the body exceeds,
-    /// and the step shorter than it need be.
+    /// True if the iteration did not converge: `frequency` is then an upper bound, and the step shorter than necessary.
     pub is_bound: bool,
-    /// The element whose own highest frequency is the highest, counted from 0, that frequency
-    /// (rad/s; no body is faster than its fastest element), and its centre (m).
+    /// The element with the highest frequency of its own, counted from 0, that frequency (rad/s; an upper bound of the
+    /// body's), and its centre (m).
     pub element: usize,
     pub element_frequency: f64,
     pub at: Vec3,
-    /// Products with the stiffness that it took.
+    /// Number of products with the stiffness.
     pub products: usize,
 }
 
 impl SolidStepLimit {
-    /// Of the same solid with springs that add so much (1/s²) to the square of its highest frequency at most.
+    /// Limit of the same solid with springs that add at most `added` (1/s²) to the square of its highest frequency.
     pub fn with(&self, added: f64) -> SolidStepLimit {
         let frequency = (self.frequency * self.frequency + added).sqrt();
         SolidStepLimit { step: self.step * self.frequency / frequency, frequency, ..*self }
     }
 }
 
-/// ωh at which a method turns unstable without damping. For Runge–Kutta √8; damping moves either
-/// limit by less than αh.
+/// ωh at the stability limit without damping: √8 for Runge–Kutta. Damping changes either limit by less than αh.
 pub(crate) fn stability_margin(method: ExplicitMethod) -> f64 {
     match method {
         ExplicitMethod::CentralDifferences => 2.0,
@@ -46,8 +43,8 @@ pub(crate) fn stability_margin(method: ExplicitMethod) -> f64 {
     }
 }
 
-/// Products with the stiffness after which [`step_limit`] takes the bound instead. Bodies of this
-/// program's meshes take 8 to some 60.
+/// Products with the stiffness after which [`step_limit`] takes the bound instead. Meshes of this program take 8 to
+/// some 60.
 pub(crate) const MOST_PRODUCTS: usize = 200;
 
 /// The largest stable step at given displacements.
@@ -59,7 +56,7 @@ pub fn step_limit(
     step_limit_within(model, displacement, method, MOST_PRODUCTS)
 }
 
-/// As [`step_limit`], with at most so many products with the stiffness.
+/// As [`step_limit`], with a limit on the products with the stiffness.
 pub fn step_limit_within(
     model: &SolidModel,
     displacement: &[Node],
@@ -76,7 +73,7 @@ pub fn step_limit_within(
     SolidStepLimit { step, frequency, is_bound, element, element_frequency, at, products }
 }
 
-/// Everything a product with the tangent stiffness needs.
+/// Element tangents for products with the stiffness.
 struct ElementTangents<'a> {
     model: &'a SolidModel,
     displacement: &'a [Node],
@@ -101,7 +98,7 @@ impl<'a> ElementTangents<'a> {
         ElementTangents { model, displacement, linear, quadratic }
     }
 
-    /// Nodes of an element and its forces against a change of displacement, −K_e x.
+    /// Nodes of an element and its forces for a change of displacement, −K_e x.
     fn product(&self, element: usize, x: impl Fn(usize, u32) -> Vec3) -> Product {
         let law = |strain: &_| self.model.problem.material.second_piola_kirchhoff(strain);
         let at = |node: u32| {
@@ -131,8 +128,7 @@ impl<'a> ElementTangents<'a> {
         }
     }
 
-    /// The element with the highest frequency under its own lumped mass, by power iteration; a few
-    /// percent do for naming it.
+    /// The element with the highest frequency under its own lumped mass, by power iteration to a few percent.
     fn fastest(&self) -> (usize, f64) {
         let problem = &self.model.problem;
         let mut best = (0, 0.0);
@@ -176,7 +172,7 @@ struct Product {
     forces: [Vec3; 10],
 }
 
-/// Some motion of an element with a share of everything.
+/// An element displacement with components of all modes.
 fn start_vector() -> [Vec3; 10] {
     let mut x = [[0.0; 3]; 10];
     for (k, v) in x.iter_mut().flatten().enumerate() {
@@ -185,8 +181,8 @@ fn start_vector() -> [Vec3; 10] {
     x
 }
 
-/// Highest angular frequency of the body, rad/s (nothing if the iteration does not settle); and the
-/// products with the stiffness that it took.
+/// Highest angular frequency of the body, rad/s (`None` without convergence), and the number of products with the
+/// stiffness.
 fn highest_frequency(
     model: &SolidModel,
     elements: &ElementTangents,
@@ -215,9 +211,9 @@ pub(crate) fn roots(model: &SolidModel) -> Vec<Vec3> {
     model.per_mass.iter().map(|m| [m[0].sqrt(), m[1].sqrt(), m[2].sqrt()]).collect()
 }
 
-/// Square root of the largest eigenvalue of a symmetric matrix, whose product with its first argument
-/// `product` adds to its second, by Lanczos' recurrence from a fixed start without what `root` makes
-/// zero, ended when it settles (nothing if it does not); and the products that it took.
+/// Square root of the largest eigenvalue of a symmetric matrix, whose product with its first argument `product` adds to
+/// its second, by Lanczos' recurrence from a fixed start without components where `root` is zero (`None` without
+/// convergence); and the number of products.
 pub(crate) fn lanczos(
     root: &[Vec3],
     most: usize,
@@ -227,7 +223,7 @@ pub(crate) fn lanczos(
     let dot = |a: &[Vec3], b: &[Vec3]| -> f64 {
         a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).sum()
     };
-    // A checkered motion: the fastest modes move neighbours against each other.
+    // An alternating displacement: in the fastest modes neighbours move against each other.
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut random = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -269,9 +265,8 @@ pub(crate) fn lanczos(
     (None, most)
 }
 
-/// An angular frequency, rad/s, that none of the body's exceeds: the square root of the largest sum
-/// of sizes along a row of the inverse mass times the stiffness (Gershgorin), taken element by
-/// element, which can only make it larger.
+/// Upper bound of the body's angular frequencies, rad/s: square root of the largest row sum of magnitudes of the
+/// inverse mass times the stiffness (Gershgorin), with magnitudes taken element by element.
 fn frequency_bound(model: &SolidModel, elements: &ElementTangents) -> f64 {
     let mut sums = vec![[0.0; 3]; model.mass.len()];
     for element in 0..model.problem.elements.len() {
@@ -295,7 +290,7 @@ fn frequency_bound(model: &SolidModel, elements: &ElementTangents) -> f64 {
             }
         }
     }
-    // `f64::max` would drop what is not a number.
+    // `f64::max` would drop NaN.
     let larger = |most: f64, sum: f64| if most.is_nan() || sum <= most { most } else { sum };
     let rows = sums.iter().zip(&model.per_mass);
     let rows = rows.flat_map(|(sum, per_mass)| [0, 1, 2].map(|i: usize| sum[i] * per_mass[i]));

@@ -1,5 +1,5 @@
-//! Cauchy stresses of a deformed solid: where they are computed, over an element, and averaged to
-//! the nodes; and whether an element is turned inside out.
+//! Cauchy stresses of a deformed solid at quadrature points, over an element, and averaged at the nodes; inverted
+//! elements.
 
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{Tet10, from_points};
@@ -32,9 +32,8 @@ fn each_point(model: &SolidModel, displacement: &[Vec3], mut visit: impl FnMut(u
     }
 }
 
-/// Cauchy stress (2.5) at the quadrature points, Pa, one row an element: the one stress of a
-/// four-node element, or the four of a ten-node element. These are the stresses that the nodal
-/// forces are made of.
+/// Cauchy stress (2.5) at the quadrature points, Pa, one row an element: one stress of a four-node element, four of a
+/// ten-node element. Nodal forces follow from these stresses.
 ///
 /// `displacement` has one vector for each node, m.
 pub fn point_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Vec<Sym3>> {
@@ -62,7 +61,7 @@ pub fn element_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> 
     sums.into_iter().map(|(sum, whole)| sum.map(|s| s / whole)).collect()
 }
 
-/// The first element with a quadrature point that is turned inside out, and its volume ratio there.
+/// The first element with an inverted quadrature point, and its volume ratio there.
 pub fn first_inverted(model: &SolidModel, displacement: &[Vec3]) -> Option<(usize, f64)> {
     let mut found = None;
     each_point(model, displacement, |element, _, h| {
@@ -75,16 +74,16 @@ pub fn first_inverted(model: &SolidModel, displacement: &[Vec3]) -> Option<(usiz
     found
 }
 
-/// What a look at a moving solid sees.
+/// Results of a check of a moving solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Look {
-    /// As [`first_inverted`].
+    /// See [`first_inverted`].
     pub inverted: Option<(usize, f64)>,
     /// Largest von Mises stress at a quadrature point, Pa.
     pub von_mises: f64,
 }
 
-/// [`first_inverted`] and the largest stress in one go.
+/// [`first_inverted`] and the largest stress in one pass.
 pub fn look(model: &SolidModel, displacement: &[Vec3]) -> Look {
     let mut found = Look::default();
     each_point(model, displacement, |element, _, h| {
@@ -99,11 +98,11 @@ pub fn look(model: &SolidModel, displacement: &[Vec3]) -> Look {
     found
 }
 
-/// Cauchy stress at the nodes, Pa: each element's stress, for ten-node elements continued linearly
-/// from its quadrature points, averaged over the elements at the node by their undeformed volume.
+/// Cauchy stress at the nodes, Pa: each element's stress, for ten-node elements extrapolated linearly from its
+/// quadrature points, averaged over the elements at the node by their undeformed volume.
 ///
-/// Smoother and closer than the raw stresses inside the body; across an edge of two bodies or a
-/// jump of the load it smears the jump over an element.
+/// Smoother and more accurate than element stresses inside the body; a jump across an edge of two bodies or of the load
+/// is smeared over an element.
 pub fn nodal_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> {
     let problem = &model.problem;
     let sound = "elements were checked when the model was made";
@@ -124,7 +123,7 @@ pub fn nodal_stresses(model: &SolidModel, displacement: &[Vec3]) -> Vec<Sym3> {
     average_at_nodes(problem.nodes.len(), at_points.iter().enumerate().map(of))
 }
 
-/// Means at so many nodes of what elements have at theirs, weighted by their volumes.
+/// Means at this number of nodes of element values at their nodes, weighted by volumes.
 pub fn average_at_nodes<'a>(
     count: usize,
     elements: impl Iterator<Item = (&'a [u32], [Sym3; 10], f64)>,

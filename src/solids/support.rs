@@ -1,4 +1,4 @@
-//! Whether supports leave a body free to move as a whole.
+//! Rigid motions that supports leave free.
 
 use crate::kinematics::vec3::Vec3;
 use crate::solids::model::Prescribed;
@@ -8,30 +8,28 @@ use nalgebra::{SMatrix, SVector, SymmetricEigen};
 pub const RIGID_MOTIONS: [&str; 6] =
     ["along x", "along y", "along z", "about x", "about y", "about z"];
 
-/// The rigid motions that no prescribed component stands against.
+/// The rigid motions without any prescribed component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeMotions {
-    /// How many there are, 0 to 6.
+    /// Number, 0 to 6.
     pub count: usize,
-    /// How much of each of [`RIGID_MOTIONS`] they contain, 0 to 1; rotations about the middle of
-    /// the body.
+    /// Component of each of [`RIGID_MOTIONS`], 0 to 1; rotations about the middle of the body.
     pub shares: [f64; 6],
 }
 
 impl FreeMotions {
-    /// In words, "along x, about z".
+    /// In words: "along x, about z".
     pub fn names(&self) -> String {
         let free = RIGID_MOTIONS.iter().zip(self.shares).filter(|(_, share)| *share > 1e-6);
         free.map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// Below this part of the best held motion's square sum a motion counts as free: a support 1e-4
-/// of the body's size across still holds it against turning.
+/// Below this fraction of the square sum of the best supported motion a motion counts as free: supports 1e-4 of the
+/// body's size apart still prevent a rotation.
 const HELD: f64 = 1e-9;
 
-/// Null space of the prescribed components over the rigid motions; rotations are small ones and
-/// are measured by half the body's size.
+/// Null space of the prescribed components over the rigid motions; small rotations, scaled by half the body's size.
 pub fn free_motions(nodes: &[Vec3], prescribed: &[Prescribed]) -> FreeMotions {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for node in nodes {
@@ -51,7 +49,7 @@ pub fn free_motions(nodes: &[Vec3], prescribed: &[Prescribed]) -> FreeMotions {
             0 => [1.0, 0.0, 0.0, 0.0, z, -y],
             1 => [0.0, 1.0, 0.0, -z, 0.0, x],
             2 => [0.0, 0.0, 1.0, y, -x, 0.0],
-            // No model is made of such a problem.
+            // Such a problem is refused when the model is made.
             _ => continue,
         };
         let row = SVector::<f64, 6>::from(row);

@@ -15,21 +15,21 @@ use std::sync::Arc;
 /// Marks a prescribed component.
 pub const PRESCRIBED: usize = usize::MAX;
 
-/// Which displacement component is which unknown: three for each node, [`PRESCRIBED`] where there
-/// is none. Unknowns are numbered in the order of elimination.
+/// Unknown of each displacement component: three for each node, [`PRESCRIBED`] for prescribed ones. Unknowns are in the
+/// order of elimination.
 #[derive(Clone, Debug)]
 pub struct Unknowns {
     pub of: Vec<[usize; 3]>,
     pub count: usize,
-    /// What the factors of a stiffness over them look like.
+    /// Structure of the factors of a stiffness.
     pub elimination: Arc<Elimination>,
-    /// Stored values of a stiffness, and of masses.
+    /// Number of stored values of a stiffness, and of masses.
     pub stored: usize,
     pub mass_stored: usize,
 }
 
 impl Unknowns {
-    /// Components that supports hold or move.
+    /// Number of fixed and prescribed components.
     pub fn held(&self) -> usize {
         self.of.iter().flatten().filter(|index| **index == PRESCRIBED).count()
     }
@@ -46,7 +46,7 @@ impl Unknowns {
         Factor::new(&self.elimination, matrix)
     }
 
-    /// In an order of a given kind.
+    /// With a given ordering.
     pub fn ordered(model: &SolidModel, ordering: Ordering) -> Unknowns {
         let problem = &model.problem;
         let elements = (0..problem.elements.len()).map(|element| problem.elements.nodes(element));
@@ -54,7 +54,7 @@ impl Unknowns {
         Unknowns::over(&problem.nodes, elements, &free, ordering)
     }
 
-    /// Of any elements over `nodes`, from which components of each node are free.
+    /// For any elements over `nodes`, with the free components of each node.
     pub fn over<'a>(
         nodes: &[Vec3],
         elements: impl Iterator<Item = &'a [u32]> + Clone,
@@ -108,7 +108,7 @@ pub fn pattern(problem: &SolidProblem, unknowns: &Unknowns) -> SymmetricMatrix {
     places(&graph(problem), unknowns, |_, _| true)
 }
 
-/// The same of any elements over `count` nodes.
+/// The same for any elements over `count` nodes.
 pub fn pattern_over<'a>(
     count: usize,
     elements: impl Iterator<Item = &'a [u32]> + Clone,
@@ -117,7 +117,7 @@ pub fn pattern_over<'a>(
     places(&Graph::of_elements(count, elements, |_| true), unknowns, |_, _| true)
 }
 
-/// An empty matrix with room for every pair of like components that share an element: masses.
+/// An empty matrix for every pair of equal components that share an element: masses.
 pub fn mass_pattern(problem: &SolidProblem, unknowns: &Unknowns) -> SymmetricMatrix {
     places(&graph(problem), unknowns, |i, j| i == j)
 }
@@ -187,7 +187,7 @@ pub fn stiffness(
     }
 }
 
-/// Adds an element given by its columns: forces for a unit of minus one component.
+/// Adds an element given by its columns: forces per unit of minus one component.
 fn add_element<const N: usize>(
     unknowns: &Unknowns,
     nodes: &[u32; N],
@@ -213,7 +213,7 @@ fn add_element<const N: usize>(
     }
 }
 
-/// Adds a symmetric stiffness that acts on one node alone.
+/// Adds a symmetric stiffness at one node.
 pub fn add_at_node(unknowns: &Unknowns, node: u32, stiffness: &Mat3, matrix: &mut SymmetricMatrix) {
     let of = unknowns.of[node as usize];
     for i in 0..3 {
@@ -225,12 +225,12 @@ pub fn add_at_node(unknowns: &Unknowns, node: u32, stiffness: &Mat3, matrix: &mu
     }
 }
 
-/// Which mass matrix.
+/// Kind of mass matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassMatrix {
     #[default]
     Consistent,
-    /// Diagonal, as explicit steps use it.
+    /// Diagonal, as in explicit steps.
     Lumped,
 }
 

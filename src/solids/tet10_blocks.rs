@@ -1,4 +1,4 @@
-//! Forces of many quadratic tetrahedra, as [`crate::solids::tet4_blocks`] does it for linear ones.
+//! Forces of many quadratic tetrahedra, as in [`crate::solids::tet4_blocks`].
 
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::tet10::{POINTS, Point, Tet10};
@@ -14,7 +14,7 @@ pub struct Block {
     points: [Point<Lanes>; POINTS],
 }
 
-/// Elements in their order; the last block is filled up with elements of no volume.
+/// Elements in their order; the last block is padded with elements of zero volume.
 pub fn blocks(elements: impl ExactSizeIterator<Item = (Tet10, [u32; 10])>) -> Vec<Block> {
     let zero = Lanes::of(0.0);
     let empty = Point { gradients: [[zero; 3]; 10], volume: zero };
@@ -38,7 +38,7 @@ pub fn blocks(elements: impl ExactSizeIterator<Item = (Tet10, [u32; 10])>) -> Ve
     blocks
 }
 
-/// What was cut into blocks, and what filled up the last one.
+/// The elements of the blocks, padding included.
 pub fn elements(blocks: &[Block]) -> impl Iterator<Item = (Tet10, &[u32; 10])> {
     blocks.iter().flat_map(|block| (0..LANES).map(|lane| (block.element(lane), &block.nodes[lane])))
 }
@@ -84,7 +84,7 @@ pub fn add_forces(
             let [x, y, z] = force[n];
             of_nodes[n] = to_nodes([x.to_array(), y.to_array(), z.to_array()]);
         }
-        // Element after element, as the plain loop adds them.
+        // Element after element, in the order of the plain loop.
         for (lane, nodes) in block.nodes.iter().enumerate() {
             for (node, add) in nodes.iter().zip(&of_nodes) {
                 let sum = &mut forces[*node as usize];

@@ -1,15 +1,15 @@
 //! Forces of many linear tetrahedra: blocks of [`LANES`] elements, one element a lane.
 //!
-//! The law of one element is [`Tet4::nodal_forces`], written once, for a number or for lanes of numbers; here it
-//! is called for all lanes of a block at once, with the same bits as one by one. What an element needs lies lane by
-//! lane in the order in which it is read.
+//! The law of one element is [`Tet4::nodal_forces`], written once for numbers and lanes; here it is called for all
+//! lanes of a block at once, with the same bits as one by one. Data of a block are stored lane by lane in the order of
+//! reading.
 
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::tet4::Tet4;
 use crate::kinematics::number::Number;
 use wide::f64x4;
 
-/// Elements a block: as many as the processor's vectors hold.
+/// Elements in a block: the width of the processor's vectors.
 #[cfg(target_feature = "avx512f")]
 pub type Lanes = wide::f64x8;
 #[cfg(not(target_feature = "avx512f"))]
@@ -17,7 +17,7 @@ pub type Lanes = f64x4;
 
 pub const LANES: usize = size_of::<Lanes>() / size_of::<f64>();
 
-/// A vector at a node, padded to a power of two: it is read and written in one go.
+/// A vector at a node, padded to a power of two for one load or store.
 pub type Node = [f64; 4];
 
 /// [`LANES`] elements.
@@ -28,8 +28,7 @@ pub struct Block {
     pub element: Tet4<Lanes>,
 }
 
-/// Elements in their order, cut into blocks; the last block is filled up with elements of no
-/// volume, whose forces are zero.
+/// Elements in their order, in blocks; the last block is padded with elements of zero volume and force.
 pub fn blocks(elements: impl ExactSizeIterator<Item = (Tet4, [u32; 4])>) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::with_capacity(elements.len().div_ceil(LANES));
     for (index, (element, nodes)) in elements.enumerate() {
@@ -51,7 +50,7 @@ pub fn blocks(elements: impl ExactSizeIterator<Item = (Tet4, [u32; 4])>) -> Vec<
     blocks
 }
 
-/// What was cut into blocks, and what filled up the last one.
+/// The elements of the blocks, padding included.
 pub fn elements(blocks: &[Block]) -> impl Iterator<Item = (Tet4, &[u32; 4])> {
     blocks
         .iter()
@@ -114,7 +113,7 @@ pub fn add_forces(
     }
 }
 
-// Closures are not inlined everywhere: neither `map` nor `from_fn` stands in what follows.
+// Closures are not always inlined: no `map` or `from_fn` below.
 #[inline(always)]
 fn joined(vectors: [f64x4; LANES]) -> [Lanes; 3] {
     let [x, y, z] = to_lanes(vectors);

@@ -1,8 +1,8 @@
-//! Several threads with the bits of one: within a solid, and one solid beside the other.
+//! Several threads with the bits of one: within a solid, and one solid in parallel with another.
 //!
-//! Of a solid each part owns a range of nodes and computes every element that touches one of them, so that
-//! the forces on its nodes are summed in the order in which one thread sums them; elements between two
-//! ranges are computed twice. What is left of a step, contacts and the motion of nodes, one thread does.
+//! Each part of a solid owns a range of nodes and computes every element with one of them, so that forces on its nodes
+//! are summed in the order of a single thread; elements between two ranges are computed twice. One thread does the rest
+//! of a step, contacts and the motion of nodes.
 
 use crate::mesh::tet_mesh::Elements;
 use crate::solids::explicit::ExplicitSolid;
@@ -13,18 +13,18 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Below this many elements a thread sharing out costs more than it brings.
+/// Number of elements a thread below which sharing costs more than it gains.
 pub const ELEMENTS_A_THREAD: usize = 2500;
 
 /// Threads that work is shared out to.
 #[derive(Clone, Debug, Default)]
 pub struct WorkerPool {
-    /// None where one thread does it all.
+    /// `None` for one thread.
     pool: Option<Arc<ThreadPool>>,
 }
 
 impl WorkerPool {
-    /// So many threads; one where the system gives no more.
+    /// With this number of threads; one if the system refuses.
     pub fn new(threads: usize) -> WorkerPool {
         let pool = (threads > 1).then(|| ThreadPoolBuilder::new().num_threads(threads).build());
         WorkerPool { pool: pool.and_then(Result::ok).map(Arc::new) }
@@ -34,10 +34,11 @@ impl WorkerPool {
         self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// Does the same to each of a list.
+    /// Runs the same on each item of a list.
     ///
     /// # Errors
-    /// That of the first in the list that has one.
+    ///
+    /// The first error in the order of the list.
     pub fn each<T: Send, E: Send>(
         &self,
         list: &mut [T],
@@ -57,7 +58,7 @@ impl WorkerPool {
     }
 }
 
-/// The force loop of a solid, shared out to threads.
+/// The force loop of a solid, shared by threads.
 #[derive(Debug)]
 pub(crate) struct Partition {
     crew: WorkerPool,
@@ -67,17 +68,17 @@ pub(crate) struct Partition {
 #[derive(Debug)]
 struct Part {
     model: SolidModel,
-    /// Its own nodes in the whole body; the first ones in its own numbering.
+    /// Range of its own nodes in the whole body; the first ones in its own numbering.
     owned: Range<usize>,
-    /// Foreign nodes behind its own ones, in the whole body, ascending.
+    /// Nodes of other parts, following its own ones; indices in the whole body, ascending.
     foreign: Vec<usize>,
     displacement: Vec<Node>,
     force: Vec<Node>,
 }
 
 impl ExplicitSolid {
-    /// From now on evaluates its elements in so many parts, on the threads of a crew, with the same bits;
-    /// in fewer where there are few of them, and in one of rubber.
+    /// Evaluates the elements in this number of parts on a thread pool, with the same bits; in fewer parts for few
+    /// elements, and in one for rubber.
     pub fn share(&mut self, crew: &WorkerPool, parts: usize) {
         let parts = if self.rubber.is_some() { 1 } else { parts };
         let ranges = ranges(&self.model.problem, parts);
@@ -87,7 +88,7 @@ impl ExplicitSolid {
         });
     }
 
-    /// Elements computed a step, those between two parts twice.
+    /// Elements computed a step; those between two parts count twice.
     pub fn elements_a_step(&self) -> usize {
         let whole = || self.model.problem.elements.len();
         self.team.as_ref().map_or_else(whole, |team| {

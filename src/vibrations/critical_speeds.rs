@@ -1,31 +1,33 @@
-//! Critical speeds: where a motion whirls once a turn.
+//! Critical speeds: whirl with the frequency of the spin.
 
 use crate::vibrations::rotor::{RotorError, RotorModel};
 use crate::vibrations::whirl::Whirl;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// A speed at which a motion has the frequency of the spin.
+/// A speed at which a mode whirls with the frequency of the spin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Critical {
     /// rad/s.
     pub speed: f64,
-    /// Without damping; an unbalance excites those that are not wholly backward.
+    /// The undamped mode; unbalance excites all that are not purely backward.
     pub whirl: Whirl,
 }
 
 impl RotorModel {
-    /// All critical speeds without damping, ascending. Motions e^{iΩt} at spin Ω are K p = Ω² A p with A = 1 − iG, a
-    /// Hermitian problem: nothing is looked for along lines, none is missed. Rigid motions z, which nothing holds, go along so
-    /// that no load is left on them, A_zz p_z = −A_zb p_b, and leave A_bb − A_bz A_zz⁻¹ A_zb of the others.
+    /// All undamped critical speeds, ascending. Motions e^{iΩt} at spin Ω satisfy K p = Ω² A p with A = 1 − iG, a
+    /// Hermitian problem, so that none is missed. Rigid modes z without stiffness follow so that their load vanishes,
+    /// A_zz p_z = −A_zb p_b, and leave A_bb − A_bz A_zz⁻¹ A_zb for the others.
     ///
     /// # Errors
-    /// A shaft none of whose motions is held, or one that nothing holds and whose inertia about its axis is that across it, which whirls
+    ///
+    /// A shaft without any stiffness; a free one with equal moments of inertia about and across its axis, which whirls
     /// once a turn at every speed.
     pub fn critical_speeds(&self) -> Result<Vec<Critical>, RotorError> {
         Ok(self.criticals()?.0)
     }
 
-    /// The same, and how many more there would be if rigid motions were held, however weakly: these would be the slowest.
+    /// Critical speeds, and the number of additional ones if rigid modes had a small stiffness: these would be the
+    /// lowest.
     pub(crate) fn criticals(&self) -> Result<(Vec<Critical>, usize), RotorError> {
         let rigid = self.natural.iter().filter(|&&natural| natural == 0.0).count();
         let modes = self.natural.len();
@@ -50,7 +52,7 @@ impl RotorModel {
             follows = DMatrix::zeros(0, held);
         }
         let inertia = turning.view((rigid, rigid), (held, held)) + across.adjoint() * &follows;
-        // The symmetric part of the stiffness is diagonal here, its entries the natural frequencies' squares.
+        // The symmetric part of the stiffness is diagonal here: squares of the natural frequencies.
         let inverse = DMatrix::from_fn(held, held, |i, j| {
             inertia[(i, j)] / (self.natural[rigid + i] * self.natural[rigid + j])
         });
@@ -74,35 +76,7 @@ impl RotorModel {
         found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok((found, loose))
     }
-
-    /// The speed near `critical` at which the motion's damped frequency is that of the spin, rad/s, to 1e-12 of it.
-    ///
-    /// # Errors
-    /// Eigenvalues that are not found; damping so large that the motion does not oscillate there.
-    pub fn damped_critical_speed(&self, critical: &Critical) -> Result<f64, RotorError> {
-        let excess = |speed: f64| -> Result<f64, RotorError> {
-            let whirls = self.whirls(speed, 2 * self.natural.len())?;
-            let best = whirls
-                .into_iter()
-                .max_by(|a, b| critical.whirl.likeness(a).total_cmp(&critical.whirl.likeness(b)));
-            let best = best.ok_or(RotorError::DampedCritical { near: critical.speed })?;
-            Ok(best.frequency() - speed)
-        };
-        let mut from = (critical.speed, excess(critical.speed)?);
-        let next = critical.speed + from.1;
-        let mut to = (next, if from.1 == 0.0 { 0.0 } else { excess(next)? });
-        for _ in 0..SECANTS {
-            if (to.0 - from.0).abs() <= 1e-12 * critical.speed || to.1 == from.1 {
-                return Ok(to.0);
-            }
-            let next = to.0 - to.1 * (to.0 - from.0) / (to.1 - from.1);
-            (from, to) = (to, (next, excess(next)?));
-        }
-        Err(RotorError::DampedCritical { near: critical.speed })
-    }
 }
 
-/// Steps of a secant; six are usual.
-const SECANTS: usize = 40;
-/// 1 − J/I of a rigid motion below this is none: rounding of inertias that are the same.
+/// Below this 1 − J/I of a rigid mode is rounding of equal inertias.
 const SPHERE: f64 = 1e-9;

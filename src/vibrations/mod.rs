@@ -5,5 +5,4 @@ pub mod quasi_static_limit;
 pub mod relaxing;
 pub mod rotor;
 pub mod small_motions;
-pub mod unbalance_response;
 pub mod whirl;

@@ -1,8 +1,7 @@
-//! Inertia of bodies and the housings that move with them: natural motions about an equilibrium.
+//! Inertia of bodies and of the housings that move with them: natural modes about an equilibrium.
 //!
-//! A body on a spring that is driven at ω moves by 1/(1 − (ω/ω_n)²) of its static displacement, so
-//! (ω/ω_n)² is the part that a quasi-static answer misses, as long as it is small and the drive is
-//! smooth.
+//! A mass on a spring that is driven at ω moves by 1/(1 − (ω/ω_n)²) of its static displacement. So (ω/ω_n)² is the
+//! relative error of a quasi-static answer, as long as it is small and the drive is smooth.
 
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::dot;
@@ -10,55 +9,55 @@ use crate::solids::bore_equilibrium::BoreSearch;
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen};
 use std::f64::consts::TAU;
 
-/// A rigid body that takes part.
+/// A rigid body in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingBody {
     /// Index in the assembly.
     pub body: usize,
     pub inertia: Inertia,
-    /// Coordinates that it may move along; others stay where they are.
+    /// Free coordinates; the others are fixed.
     pub free: [bool; 5],
 }
 
-/// x, y, z (m) and tilts (rad) of each body that takes part, or their rates.
+/// x, y, z (m) and tilts (rad) of each moving body, or their rates.
 pub type Coordinates = DVector<f64>;
 
 /// Mass of a housing along y, z and the tilts of a race in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HousingMass {
-    /// Place of the race's body in the list of those that take part.
+    /// Index of the race's body in the list of moving bodies.
     pub race: usize,
     pub mass: Matrix4<f64>,
-    /// What it does beside following its race.
+    /// Modes with the race fixed.
     pub held: Vec<FixedInterfaceMode>,
-    /// α of a damping α M of its elements, 1/s.
+    /// α of the damping α M of its elements, 1/s.
     pub damping: f64,
 }
 
-/// How a housing swings while its race stands still, of a modal mass of 1 kg: see [`crate::solids::fixed_interface_modes`].
+/// Mode of a housing with its race fixed, of a modal mass of 1 kg: see [`crate::solids::fixed_interface_modes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedInterfaceMode {
     /// ω², 1/s².
     pub square: f64,
-    /// Mass that it shares with y, z and the tilts of the race, √kg and m √kg.
+    /// Mass coupling with y, z and the tilts of the race, √kg and m √kg.
     pub shared: [f64; 4],
 }
 
-/// One natural motion about an equilibrium.
+/// A natural mode about an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// ω², 1/s².
     pub square: f64,
-    /// Of unit modal mass; zero in coordinates that are given.
+    /// Normalised to unit modal mass; zero in fixed coordinates.
     pub shape: Coordinates,
-    /// Mass times shape.
+    /// Mass times mode.
     pub momentum: Coordinates,
-    /// Parts of the modal mass that are the housings'.
+    /// Fractions of the modal mass in the housings.
     pub housings: Vec<f64>,
 }
 
-/// A stiffness over the coordinates of the bodies, and amplitudes of shapes (of 1 kg) behind them, with what housings do beside
-/// following their races behind those; and the mass that goes with it.
+/// Stiffness over the coordinates of the bodies, the amplitudes of modes (of 1 kg) and the fixed-interface modes of
+/// housings, in this order; and the mass matrix of the same.
 pub fn with_housings(
     stiffness: &DMatrix<f64>,
     bodies: &[MovingBody],
@@ -81,7 +80,7 @@ pub fn with_housings(
     [whole, mass]
 }
 
-/// Adds the mass of housings, whose motions with races at rest begin at `first`, `times` as much of each.
+/// Adds the mass of housings, each with a factor `times`; their fixed-interface modes begin at `first`.
 pub fn add_housings(
     to: &mut DMatrix<f64>,
     first: usize,
@@ -104,9 +103,8 @@ pub fn add_housings(
     }
 }
 
-/// Natural motions about an equilibrium with this stiffness over the coordinates of the bodies, and amplitudes of shapes
-/// behind them, slowest first; those of housings come last. None of
-/// a mass matrix that is not positive.
+/// Natural modes about an equilibrium with this stiffness over the coordinates of the bodies and the amplitudes of
+/// modes, lowest first; those of housings come last. `None` if the mass matrix is not positive definite.
 pub fn modes(
     stiffness: &DMatrix<f64>,
     bodies: &[MovingBody],
@@ -153,8 +151,8 @@ pub fn modes(
     found
 }
 
-/// Lowest natural frequency, Hz, about an equilibrium with this stiffness over the coordinates of the bodies, and amplitudes of
-/// shapes behind them. `None` where nothing moves or a body has no mass.
+/// Lowest natural frequency, Hz, about an equilibrium with this stiffness over the coordinates of the bodies and the
+/// amplitudes of modes. `None` if nothing moves or a body has no mass.
 pub fn lowest_frequency(
     stiffness: &DMatrix<f64>,
     bodies: &[MovingBody],
@@ -164,14 +162,14 @@ pub fn lowest_frequency(
     found.first().map(|lowest| lowest.square.max(0.0).sqrt() / TAU)
 }
 
-/// Of a body along x, y, z (kg) and its tilts (kg·m²).
+/// Inertia of a body along x, y, z (kg) and its tilts (kg·m²).
 fn diagonal(inertia: &Inertia) -> [f64; 5] {
     let Inertia { mass, transverse, .. } = *inertia;
     [mass, mass, mass, transverse, transverse]
 }
 
-/// Mass of a housing along the outer race's coordinates about the last equilibrium of its bore: its shape is
-/// that under the loads which go with a unit of each while the same nodes touch.
+/// Mass of a housing along the outer race's coordinates about the last equilibrium of its bore: of the displacement
+/// under the loads of a unit of each coordinate, with the same contact nodes.
 pub fn housing_mass(search: &BoreSearch, race: usize) -> HousingMass {
     let (bore, loads) = (search.bore(), search.loads_by_pose());
     let shapes = loads.each_ref().map(|loads| bore.response(loads));

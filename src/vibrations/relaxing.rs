@@ -1,30 +1,31 @@
-//! Springs in series with dashpots (Maxwell elements) in small motions: their stiffness at a frequency, and states of their own.
+//! Springs in series with dashpots (Maxwell elements) in small motions: stiffness at a frequency, and states of their
+//! own.
 //!
-//! With x = L q how far an element's ends have gone along its six directions, its spring is elongated by s: ṡ = ẋ − s/τ, and pulls by
-//! Lᵀ k s. One that turns with a body at Ω feels rates in the axes that turn: ṡ = ẋ − Ω × (x − s) − s/τ, which feeds whirl above a
-//! critical speed as a dashpot that turns does.
+//! With x = L q the displacements along an element's six directions, its spring has the elongation s with ṡ = ẋ − s/τ,
+//! and the force Lᵀ k s. An element that rotates with a body at Ω has its rates in rotating axes: ṡ = ẋ − Ω × (x − s) −
+//! s/τ. This feeds whirl above a critical speed, as a rotating dashpot does.
 
 use nalgebra::{Complex, DMatrix, DVector, SMatrix};
 
 /// One element of one connection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relaxing {
-    /// L: six rows, over coordinates.
+    /// L: six rows over coordinates.
     pub levers: DMatrix<f64>,
-    /// k, N/m and N·m/rad; of one that turns alike along Y and Z.
+    /// k, N/m and N·m/rad; equal along Y and Z for a rotating element.
     pub stiffness: [f64; 6],
     /// τ, s.
     pub relaxation_time: f64,
-    /// Ω over the speed that is asked for.
+    /// Rotation speed Ω as a fraction of the spin.
     pub spin: f64,
 }
 
-/// Y and Z of displacements and of turns.
+/// Y and Z of displacements and of rotations.
 const PAIRS: [[usize; 2]; 2] = [[1, 2], [4, 5]];
 
 impl Relaxing {
-    /// What it stores of an oscillation at `frequency` (rad/s, or infinite) beside what the spring beside it does, over coordinates;
-    /// of what stands still or turns alike.
+    /// Storage stiffness at `frequency` (rad/s, or infinite) over coordinates, without that of a parallel spring, of an
+    /// element that does not rotate or is equal along Y and Z.
     pub fn storage(&self, frequency: f64) -> DMatrix<f64> {
         let turns = (frequency * self.relaxation_time).powi(2);
         let part = if turns.is_finite() { turns / (1.0 + turns) } else { 1.0 };
@@ -34,27 +35,28 @@ impl Relaxing {
         self.levers.tr_mul(&stored)
     }
 
-    /// The same over other coordinates, of which each column of `basis` is one.
+    /// The element over other coordinates, one for each column of `basis`.
     pub(crate) fn over(&self, basis: &DMatrix<f64>) -> Relaxing {
         Relaxing { levers: &self.levers * basis, ..*self }
     }
 
-    /// Directions in which it pulls.
+    /// Directions with stiffness.
     fn directions(&self) -> impl Iterator<Item = usize> + '_ {
         (0..6).filter(|&i| self.stiffness[i] != 0.0 && self.levers.row(i).amax() > 0.0)
     }
 
-    /// L's rows of the directions in which it pulls.
+    /// Rows of L in directions with stiffness.
     pub(crate) fn pulled(&self) -> impl Iterator<Item = Vec<f64>> + '_ {
         self.directions().map(|i| self.levers.row(i).iter().copied().collect())
     }
 
-    /// How many states it has.
+    /// Number of its states.
     pub(crate) fn states(&self) -> usize {
         self.directions().count()
     }
 
-    /// Writes its rows and columns into the matrix of (D p, ṗ, …), D = `scale`, at speed `speed`; its states, √k s, begin at `first`.
+    /// Writes its rows and columns into the matrix of (D p, ṗ, …), D = `scale`, at spin `speed`; its states, √k s,
+    /// begin at `first`.
     pub(crate) fn put(&self, speed: f64, scale: &[f64], first: usize, state: &mut DMatrix<f64>) {
         let modes = scale.len();
         let mut own = [None; 6];
@@ -70,7 +72,7 @@ impl Relaxing {
         }
         let turning = self.spin * speed;
         for [y, z] in PAIRS {
-            // Ω × (x − s) of the one is what the other has gone.
+            // Ω × (x − s): each direction takes the displacement of the other.
             for (to, of, turning) in [(y, z, turning), (z, y, -turning)] {
                 let Some(at) = own[to].filter(|_| turning != 0.0) else { continue };
                 let root = self.stiffness[to].sqrt();
@@ -84,7 +86,7 @@ impl Relaxing {
         }
     }
 
-    /// Complex stiffness Lᵀ k Z L of a motion e^{λt} at speed `speed`.
+    /// Complex stiffness Lᵀ k Z L of a motion e^{λt} at spin `speed`.
     pub fn stiffness_at(&self, value: Complex<f64>, speed: f64) -> DMatrix<Complex<f64>> {
         let relaxes = 1.0 / self.relaxation_time;
         let follows = |value: Complex<f64>| value / (value + relaxes);
@@ -92,7 +94,7 @@ impl Relaxing {
         elongated[(0, 0)] = follows(value);
         elongated[(3, 3)] = follows(value);
         let turning = Complex::new(0.0, self.spin * speed);
-        // On circles either way it is one number each.
+        // On circles, forward and backward, it is one number each.
         let [forward, backward] = [follows(value - turning), follows(value + turning)];
         for [y, z] in PAIRS {
             let own = (forward + backward) * 0.5;
@@ -106,8 +108,8 @@ impl Relaxing {
         levers.tr_mul(&(pulls * &levers))
     }
 
-    /// Σ k |dz/dλ| |x|², z the part of x that its springs are elongated by: beside 2 |λ| |p|² of what has mass, whose rates these are, it
-    /// says how much of a motion e^{λt} of the natural ones' combination p, of norm 1, is the springs' own relaxing.
+    /// Σ k |dz/dλ| |x|², with z the elongation per displacement x of the springs. Compared with 2 |λ| |p|² of the
+    /// masses it is the part of the springs' relaxation in a motion e^{λt} of the modal combination p of norm 1.
     pub(crate) fn yielding(
         &self,
         value: Complex<f64>,
@@ -131,11 +133,13 @@ impl Relaxing {
     }
 }
 
-/// The largest s at which `value` is s: ω² that a stiffness gives, as a function of the ω² at which springs store it. `above` is a
-/// value of springs that have not relaxed, below which it falls slower and slower towards it (the storage of a Maxwell element is concave
-/// over ω²), so that secants stay above; where one does not its step is halved. [`None`] where it comes down to nothing.
+/// The largest fixed point s of `value`: ω² from the stiffness stored at ω². `above` is a value of unrelaxed springs;
+/// from there it falls ever more slowly towards the fixed point (the storage of a Maxwell element is concave over ω²),
+/// so that secants stay above; a step that overshoots is halved. `None` if there is no fixed point above zero.
 ///
 /// # Errors
+///
+/// Those of `value`.
 /// Those of `value`.
 pub(crate) fn settled<E>(
     above: f64,
@@ -152,7 +156,7 @@ pub(crate) fn settled<E>(
             return Ok(None);
         }
         now.1 = value(now.0)? - now.0;
-        // Past it: half way back, as often as it takes.
+        // Beyond the fixed point: halve the step, repeatedly.
         while now.1 > SETTLED * now.0 {
             let middle = 0.5 * (now.0 + before.0);
             if before.0 - middle <= SETTLED * middle {
@@ -162,7 +166,7 @@ pub(crate) fn settled<E>(
         }
         let step = now.1 * (now.0 - before.0) / (now.1 - before.1);
         let near = now.1.abs() <= SETTLED * now.0 && step.abs() <= 1e3 * SETTLED * now.0;
-        // What is near and comes no nearer is rounding of the value.
+        // Close, but no longer approaching: rounding of the value.
         let rounding = now.1.abs() <= ROUNDING * now.0 && now.1.abs() >= before.1.abs();
         if near || step == 0.0 || rounding {
             return Ok(Some(now.0));
@@ -173,10 +177,10 @@ pub(crate) fn settled<E>(
     Ok(Some(now.0))
 }
 
-/// Part by which s still changes once it has settled, and below which, of what it was, it is nothing; rounds of secants, a dozen are
-/// usual.
+/// Relative change of s at which the iteration ends, and below which s counts as zero; number of secant steps, a dozen
+/// are usual.
 const SETTLED: f64 = 1e-13;
 const NOTHING: f64 = 1e-13;
-/// Part of s to which a value may be rounded: a slow motion's among fast ones.
+/// Relative rounding of a value: of a slow mode among fast ones.
 const ROUNDING: f64 = 1e-9;
 const ROUNDS: usize = 200;

@@ -1,96 +1,35 @@
-//! A shaft on supports, over its lowest natural motions at rest.
+//! A rotating system over its lowest modes at rest.
 //!
-//! What turns with the shaft is a body of revolution, so that its matrices stand still in axes that do not turn;
-//! supports and damping stand still too. Damping in the turning shaft itself, which feeds whirl above the critical speed, is not here.
+//! Rotating bodies are axisymmetric, so that their matrices are constant in axes that do not rotate, as are those of
+//! supports and dashpots. Damping that rotates with the shaft, which feeds whirl above the critical speed, is in
+//! [`LinearSystem::circulating`].
 
-use crate::members::beam::{Beam, BeamError, BeamMatrices, STATION, station_at};
+use crate::members::beam::{BeamError, station_at};
 use crate::solids::free_modes::lowest;
 use crate::vibrations::critical_speeds::Critical;
 use crate::vibrations::relaxing::{Relaxing, settled};
-use nalgebra::{DMatrix, DVector, Matrix4};
+use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
-
-/// What holds the shaft elastically at a place.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Support {
-    /// m from the shaft's first end.
-    pub at: f64,
-    /// Over y, z, turn_y, turn_z; of a bearing the rows and columns of these in its stiffness at equilibrium.
-    pub stiffness: Matrix4<f64>,
-    /// N·s/m, N·s, N·m·s.
-    pub damping: Matrix4<f64>,
-}
-
-/// Coordinates that do not move at a place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
-    /// m from the shaft's first end.
-    pub at: f64,
-    /// y, z, turn_y, turn_z.
-    pub coordinates: [bool; 4],
-}
-
-impl Held {
-    /// In y and z.
-    pub fn pin(at: f64) -> Held {
-        Held { at, coordinates: [true, true, false, false] }
-    }
-
-    pub fn clamp(at: f64) -> Held {
-        Held { at, coordinates: [true; 4] }
-    }
-}
-
-/// A shaft and what holds it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rotor {
-    pub beam: Beam,
-    pub supports: Vec<Support>,
-    pub held: Vec<Held>,
-    /// α of a damping α M that brakes lateral motion in axes that do not turn, 1/s.
-    pub mass_damping: f64,
-    /// Further places with stations, m: of loads and sensors.
-    pub places: Vec<f64>,
-    /// How many shapes are kept; all where there are fewer. Two thirds are natural motions at rest.
-    pub modes: usize,
-}
-
-/// Shapes that are kept where nothing else is said: twelve in each plane.
-pub const MODES: usize = 24;
-
-impl Rotor {
-    /// Without supports.
-    pub fn new(beam: Beam) -> Rotor {
-        let (supports, held, places) = (Vec::new(), Vec::new(), Vec::new());
-        Rotor { beam, supports, held, mass_damping: 0.0, places, modes: MODES }
-    }
-}
 
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RotorError {
     #[error(transparent)]
     Beam(#[from] BeamError),
-    #[error("support {number} of the shaft: its stiffness or damping is not finite")]
-    Support { number: usize },
-    #[error("the damping of the shaft is {0} 1/s: it has to be 0 or more")]
-    Damping(f64),
-    #[error("every coordinate of the shaft is held: nothing is left that could move")]
+    #[error("every coordinate of the shaft is fixed: nothing can move")]
     NothingMoves,
-    #[error("the shaft on its supports falls over: their stiffness is negative along some motion")]
+    #[error("the equilibrium is unstable: the stiffness is negative along some motion")]
     Unstable,
     #[error("the {size} eigenvalues at {speed} rad/s have not been found")]
     Eigenvalues { speed: f64, size: usize },
-    #[error("no speed near {near} rad/s was found at which the damped motion whirls once a turn")]
-    DampedCritical { near: f64 },
     #[error(
-        "{name} turns with the body where it begins and is not alike along y and z: what it does changes as the body turns, and \
-         motions about the equilibrium have no frequencies. Hint: make it alike along both, or begin it at a body that does not turn"
+        "{name} rotates with the body at its first end and differs along y and z: its stiffness changes as the body turns, and \
+          the motion about the equilibrium has no frequencies. Hint: make it equal along both, or begin it at a body that does not turn"
     )]
     Uneven { name: String },
-    #[error("nothing holds or bends: a rigid shaft that moves freely has no critical speed")]
+    #[error("no stiffness: a rigid shaft that moves freely has no critical speed")]
     Unheld,
     #[error(
-        "nothing holds a motion whose inertia about the axis is that across it: it whirls once a turn at every speed"
+        "a free motion has equal moments of inertia about and across the axis: it whirls once a turn at every speed"
     )]
     Sphere,
 }
@@ -103,18 +42,20 @@ pub struct LinearSystem {
     pub damping: DMatrix<f64>,
     /// G, per rad/s of spin; skew.
     pub gyroscopic: DMatrix<f64>,
-    /// S, per rad/s of spin: damping that turns along.
+    /// S, per rad/s of spin: rotating damping.
     pub circulating: DMatrix<f64>,
-    /// Coordinates that a quarter turn from Y to Z takes the first one to the second one, the second one to less the first.
+    /// Pairs of coordinates: a quarter turn from Y to Z takes the first to the second, and the second to minus the
+    /// first.
     pub pairs: Vec<[usize; 2]>,
-    /// Coordinates that may move.
+    /// Free coordinates.
     pub free: Vec<usize>,
-    /// Springs that relax, whose stiffness is not in that above.
+    /// Maxwell elements, whose stiffness is not in `stiffness`.
     pub relaxing: Vec<Relaxing>,
 }
 
 impl LinearSystem {
-    /// With what the springs that relax store of an oscillation, each at its own frequency (rad/s or infinite), and nothing that relaxes.
+    /// The system with the storage stiffness of its Maxwell elements, each at its own frequency (rad/s or infinite),
+    /// instead of the elements.
     fn stiffened(&self, frequency: impl Fn(&Relaxing) -> f64) -> LinearSystem {
         let mut stiff = LinearSystem { relaxing: Vec::new(), ..self.clone() };
         self.relaxing.iter().for_each(|of| stiff.stiffness += of.storage(frequency(of)));
@@ -122,14 +63,14 @@ impl LinearSystem {
     }
 }
 
-/// What turns over its natural motions at rest, p̈ + (C + Ω G) ṗ + (K + Ω S) p = Bᵀ loads, q = B p.
+/// A rotating system over its modes at rest, p̈ + (C + Ω G) ṗ + (K + Ω S) p = Bᵀ loads, q = B p.
 #[derive(Clone, Debug)]
 pub struct RotorModel {
-    /// Places along the shaft at which motions are told, m.
+    /// Positions of the stations along the shaft, m.
     pub stations: Vec<f64>,
-    /// Each column a natural motion at rest, its modal mass 1, over y, z, turn_y, turn_z of all stations.
+    /// Modes at rest as columns, of unit modal mass, over y, z, turn_y, turn_z of all stations.
     pub basis: DMatrix<f64>,
-    /// rad/s, ascending; zero for rigid motions.
+    /// Natural frequencies, rad/s, ascending; zero for rigid modes.
     pub natural: Vec<f64>,
     pub damping: DMatrix<f64>,
     pub gyroscopic: DMatrix<f64>,
@@ -137,65 +78,27 @@ pub struct RotorModel {
     /// S.
     pub circulating: DMatrix<f64>,
     pub relaxing: Vec<Relaxing>,
-    /// Bᵀ M R B, R a quarter turn from Y to Z: ±i on a motion that whirls in circles, forward and backward.
+    /// Bᵀ M R B, R a quarter turn from Y to Z: ±i for a circular whirl, forward and backward.
     pub(crate) quarter_turn: DMatrix<f64>,
 }
 
-/// Below this part of the stiffness a frequency counts as that of a rigid motion: what rounding leaves.
+/// A squared frequency below this fraction of the stiffness is a rigid mode with rounding.
 const RIGID: f64 = 1e-12;
 
 impl RotorModel {
-    /// # Errors
-    /// Values that no shaft has, supports that let it fall.
-    pub fn new(rotor: &Rotor) -> Result<RotorModel, RotorError> {
-        let supports = rotor.supports.iter().map(|support| support.at);
-        let held = rotor.held.iter().map(|held| held.at);
-        let places: Vec<f64> = supports.chain(held).chain(rotor.places.iter().copied()).collect();
-        let matrices = rotor.beam.matrices(&places)?;
-        if !(rotor.mass_damping >= 0.0 && rotor.mass_damping.is_finite()) {
-            return Err(RotorError::Damping(rotor.mass_damping));
-        }
-        let mut stiffness = matrices.stiffness.clone();
-        let mut damping = &matrices.mass * rotor.mass_damping;
-        for (index, support) in rotor.supports.iter().enumerate() {
-            let values = support.stiffness.iter().chain(support.damping.iter());
-            if values.into_iter().any(|value| !value.is_finite()) {
-                return Err(RotorError::Support { number: index + 1 });
-            }
-            let first = STATION * station(&matrices, support.at);
-            let mut view = stiffness.fixed_view_mut::<STATION, STATION>(first, first);
-            view += support.stiffness;
-            let mut view = damping.fixed_view_mut::<STATION, STATION>(first, first);
-            view += support.damping;
-        }
-        let free = free_coordinates(&matrices, &rotor.held);
-        let size = matrices.mass.nrows();
-        let pairs = (0..size / 2).map(|pair| [2 * pair, 2 * pair + 1]).collect();
-        let vibrations = LinearSystem {
-            mass: matrices.mass,
-            stiffness,
-            damping,
-            gyroscopic: matrices.gyroscopic,
-            circulating: DMatrix::zeros(size, size),
-            pairs,
-            free,
-            relaxing: Vec::new(),
-        };
-        RotorModel::of(&vibrations, rotor.modes, matrices.stations, None)
-    }
-
-    /// Of any motions that `modes` shapes are kept of; `sections` are y, z, turn_y, turn_z at each of the `stations` for a unit
-    /// of each coordinate, [`None`] where they are the coordinates.
+    /// The system over `modes` of its modes; `sections` are y, z, turn_y, turn_z at each of the `stations` per unit of
+    /// each coordinate, `None` if they are the coordinates.
     ///
     /// # Errors
-    /// Nothing that moves, an equilibrium that is none.
+    ///
+    /// Nothing that moves; an unstable equilibrium.
     pub fn of(
         vibrations: &LinearSystem,
         modes: usize,
         stations: Vec<f64>,
         sections: Option<&DMatrix<f64>>,
     ) -> Result<RotorModel, RotorError> {
-        // Shapes are those of springs that have not relaxed.
+        // Modes are those of unrelaxed springs.
         let stiff =
             (!vibrations.relaxing.is_empty()).then(|| vibrations.stiffened(|_| f64::INFINITY));
         let (basis, natural) =
@@ -230,11 +133,13 @@ impl RotorModel {
         })
     }
 
-    /// Critical speeds up to `limit`, rad/s, and some above it: springs that relax have the stiffness that they store at the frequency that
-    /// forward whirl once a turn has in their axes, that of the speed where they stand still and none where they turn at the speed.
+    /// Critical speeds up to `limit`, rad/s, and some above it. Maxwell elements have their storage stiffness at the
+    /// frequency of synchronous forward whirl in their axes: the spin for elements at rest, zero for elements that
+    /// rotate with it.
     ///
     /// # Errors
-    /// As [`RotorModel::critical_speeds`].
+    ///
+    /// See [`RotorModel::critical_speeds`].
     pub fn critical_speeds_up_to(&self, limit: f64) -> Result<Vec<Critical>, RotorError> {
         let at = |speed: f64| {
             let seen = |of: &Relaxing| match of.spin {
@@ -247,11 +152,11 @@ impl RotorModel {
         if self.relaxing.iter().all(|of| of.spin == 1.0) {
             return Ok(stiffest);
         }
-        // A speed that springs give which have relaxed less than at the limit is not below it.
+        // A critical speed above the limit with springs relaxed at the limit is not below it.
         let limited = at(limit)?;
         let mut found = Vec::new();
         for (number, critical) in stiffest.iter().enumerate() {
-            // What has come to be held by nothing is no longer counted.
+            // Modes that have lost their stiffness no longer count.
             let of = |now: &(Vec<Critical>, usize)| (number + loose).checked_sub(now.1);
             let own = of(&limited).and_then(|own| limited.0.get(own));
             if own.is_some_and(|own| own.speed > limit) {
@@ -276,15 +181,15 @@ impl RotorModel {
         Ok(found)
     }
 
-    /// With what the springs that relax store of an oscillation, each at its own frequency (rad/s or infinite), and nothing that relaxes: the
-    /// same shapes in other combinations.
+    /// The model with the storage stiffness of its Maxwell elements, each at its own frequency (rad/s or infinite),
+    /// instead of the elements: the same modes in other combinations.
     fn stiffened(&self, frequency: impl Fn(&Relaxing) -> f64) -> Result<RotorModel, RotorError> {
         let mut stiffness = self.stiffness.clone();
         self.relaxing.iter().for_each(|of| stiffness += of.storage(frequency(of)));
         let even = (&stiffness + stiffness.transpose()) * 0.5;
         let count = even.nrows();
         let mass = DMatrix::identity(count, count);
-        // Of springs that have not relaxed, so that nothing comes to be rigid by comparison.
+        // Reference stiffness of unrelaxed springs, so that no mode becomes rigid by comparison.
         let held = self.natural.iter().copied().find(|&natural| natural > 0.0).unwrap_or(1.0);
         let (turned, squares) =
             lowest(&mass, &even, 1e-4 * held * held, count).ok_or(RotorError::Unstable)?;
@@ -307,47 +212,21 @@ impl RotorModel {
         })
     }
 
-    /// Whether nothing brings back a motion across the axis.
+    /// Returns whether a lateral motion has no stiffness.
     pub fn is_loose(&self) -> bool {
         let rigid = self.natural.iter().take_while(|&&natural| natural == 0.0).count();
         self.quarter_turn.columns(0, rigid).amax() > 0.01
     }
 
-    /// The station that stands at a place (m), if one does.
+    /// Index of the station at a position (m), if there is one.
     pub fn station(&self, at: f64) -> Option<usize> {
         station_at(&self.stations, at)
     }
-
-    /// Loads over all coordinates seen by the natural motions.
-    pub fn modal_load(&self, station: usize, load: [f64; STATION]) -> DVector<f64> {
-        let first = STATION * station;
-        let mut modal = DVector::zeros(self.natural.len());
-        for (i, value) in load.into_iter().enumerate() {
-            modal += self.basis.row(first + i).transpose() * value;
-        }
-        modal
-    }
 }
 
-/// The station at a place that was asked for.
-pub(crate) fn station(matrices: &BeamMatrices, at: f64) -> usize {
-    matrices.station(at).expect("places that were asked for have stations")
-}
-
-fn free_coordinates(matrices: &BeamMatrices, held: &[Held]) -> Vec<usize> {
-    let mut free = vec![true; matrices.mass.nrows()];
-    for held in held {
-        let first = STATION * station(matrices, held.at);
-        for (i, &is_held) in held.coordinates.iter().enumerate() {
-            free[first + i] &= !is_held;
-        }
-    }
-    (0..free.len()).filter(|&i| free[i]).collect()
-}
-
-/// Shapes of unit modal mass that the rotor's motions are made of, and their frequencies at rest, rad/s: the lowest natural motions,
-/// and what natural motions alone approach slowly: what gyroscopic moments and dashpots of the lowest of these bend besides, and what forces of
-/// `relaxing` springs do.
+/// Basis of unit modal mass, and its frequencies at rest, rad/s: the lowest modes, and static corrections for
+/// gyroscopic moments and dashpots of the lowest of these and for forces of `relaxing` springs, to which modes alone
+/// converge slowly.
 fn natural_motions(
     of: &LinearSystem,
     modes: usize,
@@ -363,7 +242,7 @@ fn natural_motions(
     let mass = part(&of.mass);
     let stiffness = part(&of.stiffness);
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
-    // Of what is held at all.
+    // Of coordinates with stiffness.
     let ratios = (0..count).map(|i| stiffness[(i, i)] / mass[(i, i)]).filter(|ratio| *ratio > 0.0);
     let lightest = ratios.fold(f64::INFINITY, f64::min);
     let (mut shapes, mut squares) =
@@ -387,7 +266,7 @@ fn natural_motions(
         ritz.columns_mut(0, keep).copy_from(&shapes.columns(0, keep));
         let mut at = keep;
         for column in bent.column_iter() {
-            // Twice: what is left may be small beside what was taken away.
+            // Twice: the rest may be small compared with the removed part.
             let mut column = column.into_owned();
             let before = column.dot(&(&mass * &column)).sqrt();
             for _ in 0..2 {
@@ -396,7 +275,8 @@ fn natural_motions(
                 column -= ritz.columns(0, at) * taken;
             }
             let left = column.dot(&(&mass * &column)).sqrt();
-            // Two discs' moments may bend the shaft alike, damping of the mass does what inertia does, and elements of one spring pull alike.
+            // Moments of two discs may give the same deflection, mass damping acts like inertia, and elements of one
+            // spring act alike.
             if left > 1e-9 * before && at < ritz.ncols() {
                 ritz.set_column(at, &(column / left));
                 at += 1;

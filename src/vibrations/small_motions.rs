@@ -1,11 +1,11 @@
-//! Small motions of an assembly about its equilibrium, what spins spinning: stiffness is that of the search for
-//! equilibria, nothing of it by differences.
+//! Small motions of an assembly about its equilibrium, with rotating bodies. The stiffness is that of the equilibrium
+//! search, without finite differences.
 //!
-//! Balls are springs without mass, a housing takes part with the shapes that follow its race, and with what it does while that stands
-//! still ([`crate::solids::fixed_interface_modes`]).
-//! Axes do not spin with the bodies, which are of revolution: M, C, G and K stand still. With spin Ω about X a body of axial inertia
-//! J makes moments J Ω against the rates of its tilts; its shapes have those of [`crate::members::flexible_shaft`]. Dashpots that begin at
-//! a body that spins turn with it, and feed whirl above the critical speed as damping inside the shaft does; so do Maxwell elements.
+//! Balls are massless springs; a housing contributes the displacement that follows its race, and its modes with the
+//! race fixed ([`crate::solids::fixed_interface_modes`]). Axes do not rotate with the bodies, which are axisymmetric:
+//! M, C, G and K are constant. At spin Ω about X a body of axial inertia J has moments J Ω against the rates of its
+//! tilts; its modes have those of [`crate::members::flexible_shaft`]. Dashpots and Maxwell elements whose first end is
+//! on a rotating body rotate with it, and feed whirl above the critical speed as internal damping does.
 
 use crate::assembly::lists::{Assembly, Body};
 use crate::assembly::loads::Rotation;
@@ -26,22 +26,22 @@ use crate::vibrations::rotor::{LinearSystem, RotorError, RotorModel};
 use nalgebra::{DMatrix, DVector};
 use std::convert::Infallible;
 
-/// Shapes that motions are made of, but for answers to what brakes them: with those of two bearings and a shaft between them all that
-/// whirl below some kHz.
+/// Number of modes kept, without static corrections for damping: with two bearings on a shaft all that whirl below some
+/// kHz.
 const MODES: usize = 36;
 
-/// What vibrates, and where its motions are told.
+/// The linear system, and the names of its stations.
 pub struct SmallMotionModel {
     pub model: RotorModel,
-    /// Bodies, then sections of bodies that bend; the model's stations number them.
+    /// Bodies, then sections of flexible bodies, in the order of the model's stations.
     pub places: Vec<String>,
-    /// The largest given speed of a body (rad/s), of which the others turn at a fixed part.
+    /// Largest prescribed speed of a body (rad/s); the other bodies rotate at a fixed ratio to it.
     pub top_speed: f64,
-    /// Whose it is, where others turn at other speeds.
+    /// Name of its body; `None` if all rotate at that speed.
     pub fastest: Option<String>,
 }
 
-/// Speed that is given at the end of all that changes, rad/s.
+/// Prescribed speed after all changes, rad/s.
 fn final_speed(assembly: &Assembly, body: &Body) -> f64 {
     let last = assembly.corners().last().copied().unwrap_or(0.0);
     match body.driven().map(|race| &race.rotation) {
@@ -52,10 +52,11 @@ fn final_speed(assembly: &Assembly, body: &Body) -> f64 {
     }
 }
 
-/// Small motions about `found`, the equilibrium of `still`; the bodies that take part, in the order of its unknowns.
+/// Small motions about `found`, the equilibrium of `still`; bodies in the order of its unknowns.
 ///
 /// # Errors
-/// Nothing that moves, a body without mass, an equilibrium that is none, springs that turn and differ along their Y and Z.
+///
+/// Nothing that moves; a body without mass; an unstable equilibrium; rotating springs that differ along Y and Z.
 pub fn whirling(
     assembly: &Assembly,
     still: &StaticAssembly,
@@ -103,7 +104,7 @@ pub fn whirling(
         let body = bodies.iter().position(|of| of.body == shaft.body);
         bending(&mut all, shaft, (body.map(|body| 5 * body), first), ratio(shaft.body));
     }
-    // Those of the model hold sections of bodies that bend; which body spins is known of the assembly's.
+    // The model's connections are between sections of flexible bodies; the assembly's name the body that rotates.
     let spins = assembly.connections.iter().map(|of| ratio(of.ends[0].body));
     let spins: Vec<(&Connection, f64)> = model.assembly.connections.iter().zip(spins).collect();
     if let Some((uneven, _)) = spins.iter().find(|(of, spin)| *spin != 0.0 && of.is_uneven()) {
@@ -132,10 +133,11 @@ pub fn whirling(
 }
 
 impl SmallMotionModel {
-    /// [`RotorModel::critical_speeds_up_to`] of this, rad/s.
+    /// See [`RotorModel::critical_speeds_up_to`], rad/s.
     ///
     /// # Errors
-    /// As that.
+    ///
+    /// The same.
     pub fn critical_speeds(&self, limit: f64) -> Result<Vec<Critical>, RotorError> {
         match self.model.relaxing.is_empty() {
             true => self.model.critical_speeds(),
@@ -144,8 +146,8 @@ impl SmallMotionModel {
     }
 }
 
-/// Natural motions with nothing turning and nothing damping, slowest first: each with the stiffness that springs which relax store at
-/// its own frequency, towards which it comes down from that of springs that have not relaxed.
+/// Undamped natural modes at rest, lowest first. Each has the storage stiffness of the Maxwell elements at its own
+/// frequency, found from above, starting with unrelaxed springs.
 pub fn natural_motions(
     still: &StaticAssembly,
     found: &AssemblySolution,
@@ -171,7 +173,7 @@ pub fn natural_motions(
     let rigid = RIGID * all.last().map_or(0.0, |fastest| fastest.square);
     let moving = all.iter_mut().enumerate().filter(|(_, mode)| mode.square > rigid);
     for (number, mode) in moving {
-        // One of a pair of the same frequency (along Y and Z, say) is found with the other.
+        // One of a pair of equal frequency (along Y and Z, say) is found with the other.
         let slower = last.get(number.wrapping_sub(1)).zip(last.get(number));
         if let Some((one, other)) = slower
             && other.square - one.square <= PAIR * one.square
@@ -186,7 +188,7 @@ pub fn natural_motions(
         let Ok(square) = settled(mode.square.max(0.0), value);
         *mode = last[number].clone();
         if square.is_none() {
-            // Relaxed, nothing brings it back.
+            // Relaxed, the mode has no stiffness.
             mode.square = 0.0;
             last.clear();
         }
@@ -195,9 +197,9 @@ pub fn natural_motions(
     all
 }
 
-/// Squares of frequencies below this part of the largest one are of what nothing brings back, but for rounding.
+/// Squared frequencies below this fraction of the largest are zero but for rounding.
 const RIGID: f64 = 1e-14;
-/// Squares of frequencies closer than this part are of a pair.
+/// Squared frequencies closer than this fraction are a pair.
 const PAIR: f64 = 1e-8;
 
 /// Maxwell elements over the unknowns.
@@ -223,7 +225,7 @@ fn relaxing(
     spins.iter().flat_map(of).collect()
 }
 
-/// Everything where an equilibrium has it.
+/// All positions of an equilibrium.
 fn placed(model: &Model, found: &AssemblySolution) -> Evaluation {
     let mut at = DVector::zeros(model.scale.len());
     for (body, first, _) in model.loaded() {
@@ -242,7 +244,7 @@ fn placed(model: &Model, found: &AssemblySolution) -> Evaluation {
     }
 }
 
-/// Gyroscopic moments and damping of a shaft's shapes.
+/// Adds gyroscopic moments and damping of a shaft's modes.
 fn bending(
     all: &mut LinearSystem,
     shaft: &ElasticShaft,
@@ -274,7 +276,7 @@ fn bending(
     }
 }
 
-/// A matrix over the unknowns, of what is added over bodies and sections.
+/// Projects a sum over bodies and sections onto the unknowns.
 fn over_unknowns(
     model: &Model,
     here: &Evaluation,
@@ -287,7 +289,7 @@ fn over_unknowns(
     here.stiffness
 }
 
-/// Names of bodies that are loaded and of sections, and y, z and tilts of each for a unit of every unknown.
+/// Names of loaded bodies and of sections, and their y, z and tilts per unit of every unknown.
 fn told(model: &Model, still: &StaticAssembly, moved: &[Moved]) -> (Vec<String>, DMatrix<f64>) {
     let size = model.scale.len();
     let mut places = Vec::new();

@@ -1,4 +1,4 @@
-//! Motions of a spinning rotor: eigenvalues, direction of whirl, shapes; lines over speeds (Campbell diagram).
+//! Modes of a rotating system: eigenvalues, direction of whirl, mode shapes; lines over speeds (Campbell diagram).
 
 use crate::members::beam::STATION;
 use crate::vibrations::relaxing::Relaxing;
@@ -6,18 +6,19 @@ use crate::vibrations::rotor::{RotorError, RotorModel};
 use faer::Mat;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// A natural motion at a speed, q = Re(shape · e^{λt}).
+/// A mode at a speed, q = Re(shape · e^{λt}).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whirl {
     /// λ, 1/s; its imaginary part is above 0.
     pub eigenvalue: Complex<f64>,
-    /// From 1 (every point on a circle the way the shaft spins) over 0 (to and fro) to −1 (against it), weighted by inertia.
+    /// Direction, weighted by inertia: 1 (circular, with the spin), 0 (to and fro), −1 (circular, against the spin).
     pub direction: f64,
-    /// Part of the motion, by inertia, that is across the axis: 0 of a shaft that swings along it.
+    /// Fraction of the motion, by inertia, across the axis: 0 for an axial vibration.
     pub across: f64,
-    /// Over y, z, turn_y, turn_z of each station; its largest deflection, or turn where nothing deflects, is 1.
+    /// Mode shape over y, z, turn_y, turn_z of each station, scaled to a largest deflection of 1 (largest rotation
+    /// without deflection).
     pub shape: Vec<[Complex<f64>; STATION]>,
-    /// Over the rotor's natural motions at rest, of norm 1.
+    /// The same over the modes at rest, of norm 1.
     modal: DVector<Complex<f64>>,
 }
 
@@ -27,13 +28,13 @@ impl Whirl {
         self.eigenvalue.im
     }
 
-    /// Part of critical damping; below 0 the motion grows.
+    /// Damping ratio; negative for a growing motion.
     pub fn damping_ratio(&self) -> f64 {
-        // 0, not −0, where nothing damps.
+        // 0, not −0, without damping.
         0.0 - self.eigenvalue.re / self.eigenvalue.norm()
     }
 
-    /// How alike two motions' shapes are, 0 to 1.
+    /// Similarity of two mode shapes, 0 to 1.
     pub fn likeness(&self, other: &Whirl) -> f64 {
         self.modal.dotc(&other.modal).norm_sqr()
     }
@@ -42,7 +43,7 @@ impl Whirl {
         self.direction > 0.0
     }
 
-    /// In a word: forward, backward, or to and fro.
+    /// "forward", "backward" or "to and fro".
     pub fn turns(&self) -> &'static str {
         match self.direction {
             d if d > 0.5 => "forward",
@@ -52,20 +53,23 @@ impl Whirl {
     }
 }
 
-/// Whirl over speeds: each line is one motion followed from speed to speed by its shape.
+/// Whirl over speeds: each line is one mode followed from speed to speed by its shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Campbell {
     /// rad/s.
     pub speeds: Vec<f64>,
-    /// Ascending by frequency at the last speed; one motion for each speed down to where it swings no more.
+    /// Ascending by frequency at the last speed; each has one mode for each speed down to where it no longer
+    /// oscillates.
     pub lines: Vec<Vec<Whirl>>,
 }
 
 impl RotorModel {
-    /// The lowest `count` oscillating motions, without those by which springs relax, at spin `speed` (rad/s about X), ascending by frequency.
+    /// The lowest `count` oscillating modes, without relaxation of springs, at spin `speed` (rad/s about X), ascending
+    /// by frequency.
     ///
     /// # Errors
-    /// Eigenvalues that are not found.
+    ///
+    /// Eigenvalues that do not converge.
     pub fn whirls(&self, speed: f64, count: usize) -> Result<Vec<Whirl>, RotorError> {
         self.motions(speed, count, |value| !self.decays(value))
     }
@@ -81,22 +85,22 @@ impl RotorModel {
         let values = self.eigenvalues(speed, &damping, &stiffness)?;
         let values = values.into_iter().filter(which).enumerate();
         let both = [&damping, &stiffness];
-        // Of a shaft that spins the other way it is the other circle; −0, where its Campbell lines begin, is its side too.
+        // For a reversed spin forward is the other circle; −0, where its Campbell lines begin, counts as reversed.
         let side = 1f64.copysign(speed);
         let whirls = values.filter_map(|(number, value)| self.whirl(value, (speed, both), number));
         let whirls = whirls.map(|whirl| Whirl { direction: side * whirl.direction, ..whirl });
         Ok(whirls.take(count).collect())
     }
 
-    /// Whether a motion is how springs relax or dashpots creep, turned a little by what spins: it dies out faster than it turns, and has no
-    /// resonance.
+    /// Returns whether a motion is relaxation of springs or creep of dashpots, slightly rotated by the spin: it decays
+    /// faster than it rotates, and has no resonance.
     fn decays(&self, value: &Complex<f64>) -> bool {
         let turns = if self.relaxing.is_empty() { CREEPS } else { 1.0 };
         -value.re > turns * value.im
     }
 
-    /// Of (D p, ṗ) and the states of springs that relax, with D the natural frequencies: skew-symmetric without damping, so that nothing is badly scaled. A growth
-    /// that rounding alone would leave is 0.
+    /// Eigenvalues of the matrix of (D p, ṗ) and the states of Maxwell elements, with D the natural frequencies:
+    /// skew-symmetric without damping, so well scaled. Growth within rounding is set to 0.
     fn eigenvalues(
         &self,
         speed: f64,
@@ -136,8 +140,8 @@ impl RotorModel {
         Ok(values)
     }
 
-    /// Shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K + ΩS and what springs that relax are at λ. [`None`] of an
-    /// eigenvalue that is the springs': relaxing against each other, or more than what has mass swings.
+    /// Mode shape of the `number`-th eigenvalue by inverse iteration on λ²I + λ(C + ΩG) + K + ΩS plus the Maxwell
+    /// elements at λ. `None` if the motion is relaxation of the springs.
     fn whirl(
         &self,
         value: Complex<f64>,
@@ -145,7 +149,7 @@ impl RotorModel {
         number: usize,
     ) -> Option<Whirl> {
         let modes = self.natural.len();
-        // So far beside the eigenvalue that the factors exist, so near that two steps leave nothing of the others.
+        // Far enough from the eigenvalue for the factors to exist, close enough for two iterations.
         let near = value * Complex::new(1.0 + 1e-11, 1e-11);
         let mut pencil = DMatrix::from_fn(modes, modes, |i, j| {
             let inertia = if i == j { near * near } else { Complex::new(0.0, 0.0) };
@@ -153,8 +157,8 @@ impl RotorModel {
         });
         self.relaxing.iter().for_each(|of| pencil += of.stiffness_at(near, speed));
         let factors = pencil.lu();
-        // Both directions of whirl are in it; one more than the other, in turns, so that two motions of one frequency (at
-        // rest) are not found as one.
+        // Contains both directions of whirl, one more than the other, alternating, so that two modes of one frequency
+        // (at rest) differ.
         let start = DVector::from_fn(modes, |i, _| 1.0 + 0.11 * (i % 7) as f64);
         let side = if number.is_multiple_of(2) { -0.9 } else { 0.9 };
         let turned = &self.quarter_turn * &start * side;
@@ -177,7 +181,7 @@ impl RotorModel {
         moves.then(|| self.motion(value, modal))
     }
 
-    /// A motion of the natural ones' combination `modal`.
+    /// The mode with the modal combination `modal`.
     pub(crate) fn motion(&self, eigenvalue: Complex<f64>, modal: DVector<Complex<f64>>) -> Whirl {
         let turned = self.quarter_turn.map(|value| Complex::new(value, 0.0)) * &modal;
         let direction = modal.dotc(&turned).im / modal.norm_squared();
@@ -200,10 +204,11 @@ impl RotorModel {
         Whirl { eigenvalue, direction, across, shape, modal }
     }
 
-    /// The `count` lowest motions at the last of `speeds` (rad/s) and the same motions at the others.
+    /// The `count` lowest modes at the last of `speeds` (rad/s), followed to the other speeds.
     ///
     /// # Errors
-    /// Eigenvalues that are not found.
+    ///
+    /// Eigenvalues that do not converge.
     pub fn campbell(&self, speeds: &[f64], count: usize) -> Result<Campbell, RotorError> {
         let mut lines: Vec<Vec<Whirl>> = Vec::new();
         let mut followed = 1;
@@ -212,11 +217,11 @@ impl RotorModel {
                 lines = self.whirls(speed, count)?.into_iter().map(|whirl| vec![whirl]).collect();
                 continue;
             }
-            // Lines cross: a few more than there are lines to choose from, or all where what dies out at this speed is among them.
+            // Lines cross: more candidates than lines, or all if decaying motions are among them.
             let most = if self.relaxing.is_empty() { 2 * count } else { usize::MAX };
             let mut found = self.motions(speed, most, |_| true)?;
             for line in lines.iter_mut().filter(|line| line.len() == followed) {
-                let last = line.last().expect("a line has begun");
+                let last = line.last().expect("each line has a first mode");
                 let best = (0..found.len())
                     .max_by(|&a, &b| last.likeness(&found[a]).total_cmp(&last.likeness(&found[b])));
                 if let Some(best) = best.filter(|&best| last.likeness(&found[best]) > ALIKE) {
@@ -232,16 +237,17 @@ impl RotorModel {
     }
 }
 
-/// Times that a motion dies out faster than it turns from which dashpots are said to creep: nothing that swings is so damped.
+/// Ratio of decay to rotation above which a motion is creep of dashpots: no oscillation is so damped.
 const CREEPS: f64 = 1e3;
-/// Motions less alike than this are not the same.
+/// Modes less similar than this are different.
 const ALIKE: f64 = 0.1;
-/// Times that springs may have more part in a motion by relaxing than what swings has; what grows is told in any case.
+/// Ratio of spring relaxation to the motion of masses above which a decaying motion is not reported; growing ones
+/// always are.
 const YIELDING: f64 = 3.0;
-/// So close to an eigenvalue, 1e-11 of it, the answer to a load is some 1e11 times the load over λ²; where it is less than this, λ is
-/// no eigenvalue of what has mass.
+/// At 1e-11 of an eigenvalue the response to a load is about 1e11 times the load over λ²; below this ratio λ is not an
+/// eigenvalue of the masses.
 const MOVES: f64 = 1e5;
 
-/// A frequency below this part of the lowest one with a stiffness is none: what rounding leaves of a rigid motion, whose two
-/// eigenvalues fall together.
+/// A frequency below this fraction of the lowest one with stiffness is rounding of a rigid mode, whose two eigenvalues
+/// coincide.
 const ROUNDING: f64 = 1e-5;

@@ -1,5 +1,5 @@
-//! How often each stage has run, counted by the code that does its work: once an evaluation and stage, never once
-//! a contact.
+//! Number of runs of each stage, counted by the code that does its work: once an evaluation and stage, never once a
+//! contact.
 
 use crate::assembly::plan::{Stage, Subject};
 
@@ -19,7 +19,7 @@ impl Counts {
         self.0[stage as usize] += times;
     }
 
-    /// Takes a count out, to be booked elsewhere.
+    /// Removes a count, to be booked elsewhere.
     #[inline]
     pub fn take(&mut self, stage: Stage) -> u64 {
         std::mem::take(&mut self.0[stage as usize])
@@ -56,14 +56,14 @@ impl StageCounts {
         }
     }
 
-    /// Starts from nothing.
+    /// Resets all counts.
     pub fn clear(&mut self) {
         let StageCounts { whole, bearings, bodies, solids, seats } = self;
         *whole = Counts::default();
         [bearings, bodies, solids, seats].into_iter().for_each(|list| list.fill(Counts::default()));
     }
 
-    /// Takes over counts without making room where there is enough.
+    /// Copies counts without allocating if there is room.
     pub fn copy_from(&mut self, other: &StageCounts) {
         self.whole = other.whole;
         self.bearings.clone_from(&other.bearings);
@@ -72,7 +72,7 @@ impl StageCounts {
         self.seats.clone_from(&other.seats);
     }
 
-    /// The same with what another part of the solution has counted.
+    /// Adds the counts of another part of the solution.
     pub fn absorb(&mut self, other: &StageCounts) {
         self.whole.absorb(&other.whole);
         let lists = [
@@ -98,7 +98,7 @@ impl StageCounts {
         }
     }
 
-    /// Counts something so often more.
+    /// Adds to a count.
     pub fn add(&mut self, stage: Stage, subject: Subject, times: u64) {
         let (list, at) = match subject {
             Subject::Whole => return self.whole.add(stage, times),
@@ -111,7 +111,7 @@ impl StageCounts {
         list[at].add(stage, times);
     }
 
-    /// All that has run at least once.
+    /// Stages with at least one run.
     pub fn list(&self) -> Vec<(Stage, Subject, u64)> {
         let subjects = std::iter::once(Subject::Whole)
             .chain((0..self.bearings.len()).map(Subject::Bearing))

@@ -1,8 +1,8 @@
-//! What a solution does, as a list of items made once from what is solved.
+//! The plan: the items of a solution, made once from its assembly.
 //!
-//! An item names a stage of the work, what of the assembly it is of, whether it is done and why. The step runs the
-//! items that say *does* and nothing else; `bearing plan` and every summary print the same list. Code that does a
-//! stage's work counts it ([`counts`]), and tests hold the counts against the items.
+//! An item names a stage of the work, its subject in the assembly, whether it is done, and why. The step runs the items
+//! that say *does* and nothing else; `bearing plan` and every summary print the same list. Code that does a stage's
+//! work counts it ([`counts`]), and tests compare the counts with the items.
 
 pub mod counts;
 pub mod motion;
@@ -15,14 +15,14 @@ pub mod steps;
 use crate::assembly::channels::ChannelGroup;
 use std::fmt;
 
-/// Something that a solution may have to do.
+/// A stage of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    // Of the start and of steps.
+    // Start and steps.
     StartEquilibrium,
     StabilityLimit,
     IntegratorChoice,
-    // Of a bearing.
+    // Bearings.
     DistanceTest,
     BallEquilibrium,
     BallGravity,
@@ -33,7 +33,7 @@ pub enum Stage {
     Pockets,
     Guide,
     BallContact,
-    // Of bodies and of what joins them.
+    // Bodies and connections.
     Evaluation,
     Equilibrium,
     Equilibria,
@@ -43,10 +43,10 @@ pub enum Stage {
     Springs,
     RotatingLoad,
     Unbalance,
-    /// What seats in solids with steps of their own hand over.
+    /// Exchange with solids in explicit steps.
     Impulses,
     Ledger,
-    // Of solids.
+    // Solids.
     FlexibleBodies,
     Elements,
     Supports,
@@ -64,7 +64,7 @@ pub enum Stage {
     LinearSystem,
     Modes,
     SolidRun,
-    // Of what is recorded.
+    // Records.
     RacesChannels,
     CageChannels,
     OrbitsChannels,
@@ -135,7 +135,7 @@ impl Stage {
         Stage::Sensors,
     ];
 
-    /// As a person reads it.
+    /// Name in plans and summaries.
     pub const fn name(self) -> &'static str {
         match self {
             Stage::StartEquilibrium => "equilibrium at the start",
@@ -160,7 +160,7 @@ impl Stage {
             Stage::Springs => "springs between bodies",
             Stage::RotatingLoad => "rotating load",
             Stage::Unbalance => "unbalance",
-            Stage::Impulses => "impulses of seats",
+            Stage::Impulses => "impulses of housing fits",
             Stage::Ledger => "ledger",
             Stage::FlexibleBodies => "flexible bodies",
             Stage::Elements => "mesh",
@@ -192,7 +192,7 @@ impl Stage {
         }
     }
 
-    /// Recording a group of channels.
+    /// Stage of recording a group of channels.
     pub const fn recording(group: ChannelGroup) -> Stage {
         match group {
             ChannelGroup::Races => Stage::RacesChannels,
@@ -208,7 +208,7 @@ impl Stage {
     }
 }
 
-/// What of the assembly an item is of: an index in its list.
+/// Subject of an item: an index in a list of the assembly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Subject {
     Whole,
@@ -219,7 +219,7 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// Its list's number and its own, as files keep them.
+    /// Number of the list and index, as files have them.
     pub fn numbers(self) -> [usize; 2] {
         match self {
             Subject::Whole => [0, 0],
@@ -230,7 +230,7 @@ impl Subject {
         }
     }
 
-    /// `None` where there is no such list.
+    /// `None` if there is no such list.
     pub fn from_numbers([list, at]: [usize; 2]) -> Option<Subject> {
         let of =
             [|_| Subject::Whole, Subject::Bearing, Subject::Body, Subject::Solid, Subject::Seat]
@@ -239,16 +239,16 @@ impl Subject {
     }
 }
 
-/// One stage of one thing, whether it is done, and why.
+/// A stage of a subject: whether it is done, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
     pub stage: Stage,
     pub subject: Subject,
-    /// The subject as a person reads it, where the stage alone does not tell.
+    /// Name of the subject, if the stage alone is ambiguous.
     pub of: Option<String>,
     pub does: bool,
     pub why: String,
-    /// How often it runs in each evaluation, where that is fixed.
+    /// Number of runs in each evaluation; `None` if it varies.
     pub cost: Option<u64>,
 }
 
@@ -265,19 +265,19 @@ impl Item {
         Item::new(stage, subject, false, why)
     }
 
-    /// The same with its subject's name.
+    /// The item with its subject's name.
     #[must_use]
     pub fn named(self, of: Option<impl Into<String>>) -> Item {
         Item { of: of.map(Into::into), ..self }
     }
 
-    /// The same, which runs so often in each evaluation.
+    /// The item with its number of runs in each evaluation.
     #[must_use]
     pub fn costing(self, cost: u64) -> Item {
         Item { cost: Some(cost), ..self }
     }
 
-    /// As a person reads it: "left: traction", "outer race motion", "housing supports", "reduced housing".
+    /// Name with subject: "left: traction", "outer race motion", "housing supports", "reduced housing".
     pub fn name(&self) -> String {
         let stage = self.stage.name();
         let Some(of) = &self.of else { return stage.into() };
@@ -297,12 +297,12 @@ impl fmt::Display for Item {
     }
 }
 
-/// Whether a list has an item that says so.
+/// Returns whether the items include this stage of this subject as done.
 pub fn does(items: &[Item], stage: Stage, subject: Subject) -> bool {
     items.iter().any(|item| item.stage == stage && item.subject == subject && item.does)
 }
 
-/// An item by its name, and how many times it ran.
+/// An item by its name, and its number of runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counted {
     pub name: String,
@@ -310,7 +310,7 @@ pub struct Counted {
     pub ran: u64,
 }
 
-/// How many times each item ran; after them what ran without an item, which says neither that it is done nor why.
+/// Number of runs of each item, then stages that ran without an item.
 pub fn counted(items: &[Item], ran: &counts::StageCounts) -> Vec<Counted> {
     let of = |item: &Item| {
         let count = ran.of(item.stage, item.subject);

@@ -1,4 +1,4 @@
-//! Items of a motion: what each evaluation of the forces computes, how it starts and steps, what it records.
+//! Plan items of a motion: evaluation of the forces, start, steps, records.
 
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::lists::{Assembly, BallMeeting, Bearing, Body, GROUND, Mobility};
@@ -20,13 +20,13 @@ pub struct Planned<'p> {
     pub assembly: &'p Assembly,
     pub options: &'p RunOptions,
     pub channels: &'p [ChannelGroup],
-    /// Why each bearing has no cage, where its scene has one.
+    /// For each bearing, why it has no cage although its scene has one.
     pub cage_left_out: &'p [Option<&'p str>],
-    /// Of flexible solids, and of those that take steps of their own.
+    /// Items of flexible solids in steps of their own.
     pub solids: Vec<Item>,
 }
 
-/// Items of a run: start and step, one evaluation, solids, records.
+/// All items of a run: start and step, one evaluation, solids, records.
 pub fn items(run: Planned) -> Vec<Item> {
     let Planned { assembly, options, channels, cage_left_out, solids } = run;
     let mut items = vec![start(options.start), step_size(options)];
@@ -44,7 +44,7 @@ pub fn items(run: Planned) -> Vec<Item> {
     items
 }
 
-/// Of what has no flexible solid.
+/// Item of a scene without flexible solids.
 pub fn no_solids() -> Item {
     let why = "the scene has no solid: no element stage";
     Item::skips(Stage::FlexibleBodies, Subject::Whole, why)
@@ -52,7 +52,7 @@ pub fn no_solids() -> Item {
 
 /// Items of one evaluation of the forces, in the order of the work.
 ///
-/// `cage_left_out` is why a bearing has no cage, where its scene has one; one for each bearing, or none.
+/// `cage_left_out` says why a bearing has no cage although its scene has one; one entry for each bearing, or none.
 pub fn evaluation(assembly: &Assembly, cage_left_out: &[Option<&str>]) -> Vec<Item> {
     let mut items = Vec::new();
     for (index, bearing) in assembly.bearings.iter().enumerate() {
@@ -87,7 +87,7 @@ pub fn evaluation(assembly: &Assembly, cage_left_out: &[Option<&str>]) -> Vec<It
     }));
     let along_shafts = assembly.shafts.iter().any(|shaft| !shaft.unbalances.is_empty());
     let none = match along_shafts {
-        true => "those along shafts that bend are among their loads",
+        true => "loads along flexible shafts are among their loads",
         false => "none is given",
     };
     items.extend(each(Stage::Unbalance, none, "given; of", &|body| {
@@ -120,10 +120,10 @@ fn springs(assembly: &Assembly) -> Item {
     }
 }
 
-/// Solids in shapes, and the races in their bores.
+/// Reduced solids, and the races in their bores.
 fn reduced_solids(assembly: &Assembly) -> Vec<Item> {
     let solids = assembly.solids.iter().enumerate().flat_map(|(index, solid)| {
-        let why = "some shapes of the housing, which move with the bearing in its steps";
+        let why = "modes of the housing, which move with the bearing in its steps";
         let label = assembly.seats.iter().find(|seat| seat.solid == index);
         let label = label.and_then(|seat| seat.label.as_ref());
         let of = label.map_or_else(|| bare(&solid.name), |label| format!("housing {label}"));
@@ -136,8 +136,8 @@ fn reduced_solids(assembly: &Assembly) -> Vec<Item> {
         let weighs = solid.weight.iter().any(|weight| *weight != 0.0);
         let own = [
             Item::does(Stage::Reduced, subject, why).costing(1),
-            acts(Stage::Loads, loads > 0, &format!("{loads}, on its shapes")),
-            acts(Stage::Gravity, weighs, "on its shapes"),
+            acts(Stage::Loads, loads > 0, &format!("{loads}, on its modes")),
+            acts(Stage::Gravity, weighs, "on its modes"),
             acts(Stage::Damping, solid.damping != 0.0, "mass-proportional, of all motion"),
         ];
         own.map(|item| item.named(Some(of.clone())))
@@ -149,7 +149,7 @@ fn reduced_solids(assembly: &Assembly) -> Vec<Item> {
     solids.chain(seats).collect()
 }
 
-/// A race in the bore of a solid with steps of its own: the `index`-th seat, the body and the seat's name.
+/// A race in the bore of a solid in explicit steps: the `index`-th housing fit, its body and its name.
 pub fn stepped_seat(
     assembly: &Assembly,
     index: usize,
@@ -159,11 +159,11 @@ pub fn stepped_seat(
     let race = &assembly.bodies[body].name;
     let why = format!("{race} in its bore, in every step of the housing");
     let seat = Item::does(Stage::Seat, Subject::Seat(index), why).named(name);
-    let why = format!("on {race}, the mean of each window");
+    let why = format!("on {race}, the mean of each coupling step");
     let impulses = Item::does(Stage::Impulses, Subject::Body(body), why).named(name);
     let friction = friction.map(|BoreFriction { coefficient, stretch }| {
         let why = format!(
-            "a spring at every node that touches, which slips at {coefficient} of the normal load, stretched by {} nm or more",
+             "a spring at every contact node, which slips at {coefficient} of the normal load, elongated by {} nm or more",
             rounded(1e9 * stretch)
         );
         Item::does(Stage::BoreFriction, Subject::Seat(index), why).named(name)
@@ -181,12 +181,12 @@ fn gravity(assembly: &Assembly) -> Item {
         .costing((balls + bodies) as u64)
 }
 
-/// "outer race" of "the outer race".
+/// "outer race" for "the outer race".
 fn bare(name: &str) -> String {
     name.strip_prefix("the ").unwrap_or(name).into()
 }
 
-/// Of a race or another body; the ground has none.
+/// Item of a race or another body; none for the ground.
 fn motion(body: &Body, subject: Subject) -> Option<Item> {
     let item = match &body.mobility {
         Mobility::Free(_) => {
@@ -202,10 +202,10 @@ fn motion(body: &Body, subject: Subject) -> Option<Item> {
     Some(item.named(Some(bare(&body.name))).costing(1))
 }
 
-/// Whether a run starts in equilibrium.
+/// Start in equilibrium or not.
 pub fn start(start: Start) -> Item {
     let (does, why) = match start {
-        Start::Equilibrium => (true, "asked for; balls and cage start rolling"),
+        Start::Equilibrium => (true, "requested; balls and cage start rolling"),
         Start::Nominal => (false, "starts in nominal positions, balls and cage rolling"),
     };
     Item::new(Stage::StartEquilibrium, Subject::Whole, does, why)
@@ -222,19 +222,19 @@ fn step_size(options: &RunOptions) -> Item {
         ),
         Stepping::Fixed(step) if options.integrator != Integrator::RungeKutta => (
             false,
-            format!("the step is given: {step:e} s; the limit is that of rk4, not looked at here"),
+            format!("the step is given: {step:e} s; the limit is that of rk4, not evaluated here"),
         ),
         Stepping::Fixed(step) => (
             true,
             format!(
-                "the step is given: {step:e} s; it is held against the limit at the start and \
-                     where contacts get stiffer"
+                "the step is given: {step:e} s; it is compared with the limit at the start and \
+                      when contacts get stiffer"
             ),
         ),
         Stepping::FractionOfLimit(fraction) => (
             true,
             format!(
-                "the step is {fraction} of it, from the Jacobian at the start; looked at again where \
+                "the step is {fraction} of it, from the Jacobian at the start; evaluated again when \
                  contacts get stiffer"
             ),
         ),
@@ -266,13 +266,13 @@ fn contact_damping(bearing: &Bearing, subject: Subject) -> Item {
             let why = "law none: no damping force";
             return Item::skips(Stage::ContactDamping, subject, why);
         }
-        ContactDamping::HuntCrossley { .. } => "Hunt-Crossley, of the present speed",
+        ContactDamping::HuntCrossley { .. } => "Hunt-Crossley, with the present speed",
     };
     let pairs = 2 * bearing.geometry.ball_count as u64;
     Item::does(Stage::ContactDamping, subject, why).costing(pairs)
 }
 
-/// Of a bearing that has some.
+/// Dents of a bearing.
 fn dents(bearing: &Bearing, subject: Subject) -> Option<Item> {
     if bearing.dents.is_empty() {
         return None;
@@ -280,7 +280,7 @@ fn dents(bearing: &Bearing, subject: Subject) -> Option<Item> {
     let shapes = || bearing.dents.iter().map(|dent| &dent.shape).filter(|shape| !shape.vanishes());
     let count = shapes().count();
     if count == 0 {
-        let why = "of no depth: Hertz's law is left as it is";
+        let why = "of no depth: Hertz's law is unchanged";
         return Some(Item::skips(Stage::Dents, subject, why));
     }
     let balls = bearing.geometry.ball_count;
@@ -289,7 +289,7 @@ fn dents(bearing: &Bearing, subject: Subject) -> Option<Item> {
     let takes = if raised { "some ten seconds, with a shoulder" } else { "some seconds" };
     let why = format!(
         "{count}, {balls} balls each; a table for each shape first, of at most {solves} solves of a half-space \
-         ({takes}); the equilibrium at the start knows of none"
+          ({takes}); the equilibrium at the start omits them"
     );
     Some(Item::does(Stage::Dents, subject, why).costing((count * balls) as u64))
 }
@@ -306,7 +306,7 @@ fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item
         Guidance::InnerRace => (true, "on the inner race, at both ends of the cage"),
         Guidance::Balls if cage.contacts.pocket == Pocket::Cylindrical => (
             false,
-            "the balls guide it: no test with a race; round pockets do not hold it across its axis",
+            "the balls guide it: no test with a race; round pockets do not guide it across its axis",
         ),
         Guidance::Balls => (false, "the balls guide it: no test with a race"),
     };
@@ -320,11 +320,11 @@ fn ball_contact(bearing: &Bearing, subject: Subject) -> Item {
     let stage = Stage::BallContact;
     match bearing.ball_meeting() {
         BallMeeting::Tested => {
-            let why = format!("{balls} pairs of neighbours; a pair apart costs a distance test");
+            let why = format!("{balls} pairs of neighbours; an open pair costs a distance test");
             Item::does(stage, subject, why).costing(neighbours(balls) as u64)
         }
         BallMeeting::NoLaw => {
-            Item::skips(stage, subject, "law none: balls that run into each other end the run")
+            Item::skips(stage, subject, "law none: interpenetrating balls end the run")
         }
         BallMeeting::KeptApart { gap } => {
             let gap = gap * 1e3;
@@ -334,20 +334,18 @@ fn ball_contact(bearing: &Bearing, subject: Subject) -> Item {
     }
 }
 
-/// How many of its six coordinates follow from loads.
+/// Number of coordinates that follow from loads.
 fn free_coordinates(body: &DrivenBody) -> usize {
     let loads = body.drives.iter().filter(|drive| matches!(drive, Drive::Load(_))).count();
     loads + usize::from(matches!(body.rotation, Rotation::Torque(_)))
 }
 
-/// Which of a race's coordinates follow from loads.
+/// Describes which of a race's coordinates follow from loads.
 pub fn race_freedom(body: &DrivenBody) -> String {
     match free_coordinates(body) {
         6 => "all six coordinates follow from loads".into(),
-        0 => {
-            "all six coordinates are given and imposed; the work of what drives it is booked".into()
-        }
-        free => format!("{free} of 6 coordinates follow from loads, the others are given"),
+        0 => "all six coordinates are prescribed; the work of their drives is booked".into(),
+        free => format!("{free} of 6 coordinates follow from loads, the others are prescribed"),
     }
 }
 
@@ -355,15 +353,15 @@ pub(crate) fn stands_on_ground(body: &DrivenBody) -> bool {
     body.foundation_stiffness.iter().chain(&body.foundation_damping).any(|value| *value != 0.0)
 }
 
-/// Whether a group of channels is recorded.
+/// Recording of a group of channels.
 pub fn channel_group(assembly: &Assembly, asked: &[ChannelGroup], group: ChannelGroup) -> Item {
     let needs_cage = matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
     let (does, why) = if group == ChannelGroup::Energy {
-        (true, "the ledger is always kept")
+        (true, "the ledger is always computed")
     } else if !asked.contains(&group) {
-        (false, "not asked for: not computed")
+        (false, "not requested: not computed")
     } else if needs_cage && assembly.bearings.iter().all(|bearing| bearing.cage.is_none()) {
-        (false, "no cage takes part")
+        (false, "there is no cage")
     } else {
         (true, "recorded at every output")
     };

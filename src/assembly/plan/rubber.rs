@@ -1,14 +1,14 @@
-//! Items of a solid of rubber, which is solved without inertia.
+//! Plan items of a solid of rubber, which is solved without inertia.
 
 use crate::assembly::plan::{Item, Stage, Subject};
 use crate::solids::rubber::model::RubberProblem;
 
-/// How a solid of rubber is solved for.
+/// Solution of a solid of rubber.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Relaxed, and vibrations at so many frequencies.
+    /// Relaxed equilibrium, and vibrations at this number of frequencies.
     Statics { frequencies: usize },
-    /// In words how and how far.
+    /// Steps; the text describes them.
     Steps(String),
 }
 
@@ -20,7 +20,7 @@ pub struct Bonded<'n> {
     pub index: usize,
     pub is_explicit: bool,
     pub elements: usize,
-    /// Maxwell elements of its rubber.
+    /// Number of Maxwell elements of its rubber.
     pub terms: usize,
 }
 
@@ -33,25 +33,23 @@ pub fn bonded(of: &Bonded) -> Vec<Item> {
     };
     let mesh =
         format!("{} elements of {nodes} nodes with {} Maxwell elements", of.elements, of.terms);
-    let why = format!(
-        "{way} beside the bearing, with which it exchanges impulses; in place of its springs"
-    );
+    let why = format!("{way}, exchanging impulses with the bearing; instead of its springs");
     let items = [Item::does(Stage::Elements, subject, mesh), Item::does(stage, subject, why)];
     items.into_iter().map(|item| item.named(Some(of.name))).collect()
 }
 
-/// Items of the `index`-th solid; `mesh` is what it is made of.
+/// Items of the `index`-th solid; `mesh` describes its mesh.
 pub fn items(problem: &RubberProblem, index: usize, mesh: &str, method: &Method) -> Vec<Item> {
     let subject = Subject::Solid(index);
     let either = |stage, does: bool, why: String| Item::new(stage, subject, does, why);
     let supports = match problem.prescribed.len() {
-        0 => either(Stage::Supports, false, "nothing is held".into()),
-        count => either(Stage::Supports, true, format!("{count} components held or moved")),
+        0 => either(Stage::Supports, false, "nothing is fixed".into()),
+        count => either(Stage::Supports, true, format!("{count} components fixed or moved")),
     };
     let loads = match problem.loads.len() {
         0 => either(Stage::Loads, false, "none is given".into()),
-        1 => either(Stage::Loads, true, "one, dead; weight is one".into()),
-        count => either(Stage::Loads, true, format!("{count}, dead; weight is one")),
+        1 => either(Stage::Loads, true, "one, dead; weight included".into()),
+        count => either(Stage::Loads, true, format!("{count}, dead; weight included")),
     };
     let viscous = match (problem.material.maxwell.len(), method) {
         (0, _) => either(Stage::Maxwell, false, "none is given: the network alone".into()),

@@ -1,4 +1,4 @@
-//! Items of a body that bends in shapes.
+//! Plan items of a flexible body.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::plan::motion::stands_on_ground;
@@ -7,21 +7,21 @@ use crate::members::flexible_shaft::ElasticShaft;
 use crate::numeric::clock::to_digits;
 use std::f64::consts::TAU;
 
-/// A body that bends.
+/// A flexible body.
 pub(crate) fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
     let (body, subject) = (&assembly.bodies[shaft.body], Subject::Body(shaft.body));
     let (count, natural) = (shaft.count(), shaft.shapes.natural);
     let cut = &shaft.shapes.cut;
     let beyond = match cut.above.is_finite() {
         true => format!(
-            "; left out are natural ones from {:.0} Hz on, whose part of the static compliance at a hold, up to {} %, those answers have",
+            "; the omitted modes, from {:.0} Hz on, have up to {} % of the static compliance at an attachment, which the correction modes contain",
             cut.above / TAU,
             to_digits(100.0 * cut.share, 2)
         ),
         false => String::new(),
     };
     let why = format!(
-        "{} bends in {count} shapes either way: {natural} natural ones, {} static answers to what holds it{beyond}",
+        "{} bends in {count} modes in each plane: {natural} natural modes, {} static correction modes of its attachments{beyond}",
         body.name,
         count - natural
     );
@@ -33,12 +33,12 @@ pub(crate) fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
     let damped = shaft.damping != 0.0 || shaft.internal_damping != 0.0;
     let damping = match shaft.internal_damping != 0.0 {
         true => {
-            "of bending, in proportion to mass; inside the shaft too, where it feeds whirl above a critical speed: `bearing modes` tells"
+            "of bending, mass-proportional; internal damping too, which feeds whirl above a critical speed: see `bearing modes`"
         }
         false if body.driven().is_some_and(stands_on_ground) => {
-            "in proportion to mass, of bending; where it brakes all motion, that of the rigid body is among the dashpots to the ground"
+            "mass-proportional, of bending; if of all motion, the rigid body's part is among the dashpots to the ground"
         }
-        false => "of bending alone, in proportion to mass",
+        false => "of bending alone, mass-proportional",
     };
     let either = |stage, does, why: String| {
         Item::new(stage, subject, does, if does { why } else { "none is given".into() })
@@ -51,7 +51,7 @@ pub(crate) fn bending(shaft: &ElasticShaft, assembly: &Assembly) -> [Item; 3] {
     own.map(|item| item.named(body.label.clone()))
 }
 
-/// "2 forces", "1 force"; nothing where there is none.
+/// "2 forces", "1 force"; `None` for zero.
 fn counted(count: usize, what: &str) -> Option<String> {
     (count > 0).then(|| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
 }

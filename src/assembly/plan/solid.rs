@@ -1,26 +1,26 @@
-//! Items of a flexible solid, by itself or as a housing: what acts on it, and how it is solved for.
+//! Plan items of a flexible solid, alone or as a housing: loads and solution.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::plan::{Item, Stage, Subject, does};
 use crate::motion::coupling::SolidPart;
 use crate::solids::model::{DampedMotion, SolidProblem};
 
-/// How a solid is solved for.
+/// Solution of a solid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Method {
     Statics,
     Modes,
-    /// Of a solid by itself; in words how and how far.
+    /// Steps of a solid alone; the text describes them.
     Steps(String),
-    /// Condensed onto what touches it.
+    /// Condensed onto its contact nodes.
     QuasiStatic,
-    /// Some shapes that move with the bearing. What each evaluation does to them is among the items of the motion.
+    /// Modes that move with the bearing; the items of the motion describe each evaluation.
     Reduced,
-    /// In steps of its own, beside the bearing.
+    /// Explicit steps, coupled with the bearing.
     Explicit,
 }
 
-/// Items of one solid, the `index`-th, named by `of` where it is not alone; `mesh` is what it is made of.
+/// Items of the `index`-th solid, named by `of` unless it is the only one; `mesh` describes its mesh.
 pub fn items(
     problem: &SolidProblem,
     index: usize,
@@ -30,9 +30,9 @@ pub fn items(
 ) -> Vec<Item> {
     let subject = Subject::Solid(index);
     let supports = match problem.prescribed.len() {
-        0 => Item::skips(Stage::Supports, subject, "nothing is held"),
+        0 => Item::skips(Stage::Supports, subject, "nothing is fixed"),
         count => {
-            let why = format!("{count} components held or moved");
+            let why = format!("{count} components fixed or moved");
             Item::does(Stage::Supports, subject, why)
         }
     };
@@ -50,7 +50,7 @@ pub fn items(
             Some(Item::does(Stage::QuasiStatic, subject, why).costing(1))
         }
         Method::Explicit => {
-            let why = "bearing and housing in steps of their own, which exchange impulses";
+            let why = "bearing and housing in their own steps, which exchange impulses";
             Some(Item::does(Stage::Explicit, subject, why))
         }
         Method::Steps(said) => {
@@ -63,7 +63,7 @@ pub fn items(
     named(items, of)
 }
 
-/// Items of a shaft in elements, the `index`-th solid, which is stepped beside the bodies that sit on it.
+/// Items of a shaft in elements, the `index`-th solid, in explicit steps.
 pub fn stepped_shaft(
     assembly: &Assembly,
     index: usize,
@@ -73,7 +73,7 @@ pub fn stepped_shaft(
     let (subject, of) = (Subject::Solid(index), Some(name));
     let mut items = items(&part.model.problem, index, of, mesh, &Method::Explicit);
     for item in items.iter_mut().filter(|item| item.stage == Stage::Explicit) {
-        item.why = "elements and bodies in steps of their own, which exchange impulses".into();
+        item.why = "elements and bodies in their own steps, which exchange impulses".into();
     }
     let Some(shaft) = &part.shaft else { return items };
     let (count, unbalances) = (shaft.joints.len(), shaft.unbalances.len());
@@ -84,7 +84,8 @@ pub fn stepped_shaft(
     let why = format!("{unbalances} at sections");
     items.push(Item::new(Stage::Unbalance, subject, unbalances > 0, why).named(of));
     items.extend(shaft.joints.iter().map(|joint| {
-        let why = format!("on {}, the mean of each window", assembly.bodies[joint.body].name);
+        let why =
+            format!("on {}, the mean of each coupling step", assembly.bodies[joint.body].name);
         Item::does(Stage::Impulses, Subject::Body(joint.body), why).named(of)
     }));
     items
@@ -119,14 +120,14 @@ fn acting(problem: &SolidProblem, subject: Subject, method: &Method) -> [Item; 3
         (false, _) => match problem.damped_motion {
             DampedMotion::Absolute => does(Stage::Damping, "mass-proportional, of all motion"),
             DampedMotion::RelativeToRigid => {
-                does(Stage::Damping, "mass-proportional, of motion beside the rigid one")
+                does(Stage::Damping, "mass-proportional, of motion relative to the rigid one")
             }
         },
     };
     [loads, gravity, damping]
 }
 
-/// What each evaluation of a solid's forces and each step of it does, read from the items.
+/// Stages of each force evaluation and step of a solid, read from the items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SolidSteps {
     pub supports: bool,

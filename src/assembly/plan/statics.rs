@@ -1,4 +1,4 @@
-//! Items of an equilibrium: what each evaluation of the search computes.
+//! Plan items of an equilibrium: each evaluation of the search.
 
 use crate::assembly::lists::GROUND;
 use crate::assembly::plan::{Item, Stage, Subject, does};
@@ -6,23 +6,24 @@ use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBearing
 use crate::ch2_housing::bearing::geometry::BearingKind;
 use nalgebra::Vector3;
 
-/// Why balls press outwards that do.
-pub const ASKED_FOR: &str = "asked for, with a speed of the inner race";
+/// Reason for centrifugal forces on balls.
+pub const ASKED_FOR: &str = "requested, with a speed of the inner race";
 
-/// Items of statics, `solids` those of flexible solids; `centrifugal` says why balls press outwards that do.
+/// Items of statics; `solids` are those of flexible solids, `centrifugal` is the reason for centrifugal forces on
+/// balls.
 pub fn items(assembly: &StaticAssembly, solids: Vec<Item>, centrifugal: &str) -> Vec<Item> {
     let mut items = Vec::new();
     for (index, bearing) in assembly.bearings.iter().enumerate() {
         let own = of_bearing(bearing, Subject::Bearing(index), centrifugal);
         items.extend(own.into_iter().map(|item| item.named(bearing.name.clone())));
     }
-    let why = "energy, load and stiffness at one place of all bodies";
+    let why = "energy, load and stiffness at one position of all bodies";
     items.push(Item::does(Stage::Evaluation, Subject::Whole, why).costing(1));
     items.push(equilibrium(assembly));
     for (index, body) in assembly.bodies.iter().enumerate() {
         if matches!(body.place, Place::Held(_)) && body.name != GROUND {
             let of = body.name.strip_prefix("the ").unwrap_or(&body.name);
-            let why = "its position is given: no equations for it";
+            let why = "its position is prescribed: no equations for it";
             items.push(Item::skips(Stage::Motion, Subject::Body(index), why).named(Some(of)));
         }
     }
@@ -78,18 +79,18 @@ fn of_bearing(bearing: &StaticBearing, subject: Subject, centrifugal: &str) -> V
     let outwards = match turns {
         true => Item::does(Stage::CentrifugalForce, subject, centrifugal),
         false => {
-            let why = "not asked for, or the bearing stands still";
+            let why = "not requested, or the bearing does not rotate";
             Item::skips(Stage::CentrifugalForce, subject, why)
         }
     };
-    let tests = format!("{balls} balls, two sightings each; a ball with room costs nothing more");
+    let tests = format!("{balls} balls, two races each; an open pair costs nothing more");
     vec![
         Item::does(Stage::DistanceTest, subject, tests).costing(balls as u64),
         Item::does(Stage::BallEquilibrium, subject, angles),
         gravity,
         outwards,
         Item::skips(Stage::Traction, subject, "statics has no sliding: no slices, no spin moment"),
-        Item::skips(Stage::Pockets, subject, "statics keeps each ball at its azimuth"),
+        Item::skips(Stage::Pockets, subject, "statics fixes each ball at its azimuth"),
     ]
 }
 
@@ -99,11 +100,11 @@ fn equilibrium(assembly: &StaticAssembly) -> Item {
     match free_coordinates(assembly) {
         (free, bodies) if shapes > 0 => {
             let why = format!(
-                "{free} free coordinates of {bodies} bodies and {shapes} amplitudes of what bends in one search"
+                "{free} free coordinates of {bodies} bodies and {shapes} modal amplitudes in one search"
             );
             Item::does(stage, subject, why)
         }
-        (0, _) => Item::skips(stage, subject, "all coordinates are given: one evaluation"),
+        (0, _) => Item::skips(stage, subject, "all coordinates are prescribed: one evaluation"),
         (free, 1) => Item::does(stage, subject, format!("{free} of 5 coordinates are free")),
         (free, bodies) => {
             let why = format!("{free} free coordinates of {bodies} bodies in one search");
@@ -119,7 +120,7 @@ fn loaded<'s>(assembly: &'s StaticAssembly) -> impl Iterator<Item = &'s Loaded> 
     })
 }
 
-/// Coordinates that loads decide, and bodies that have any.
+/// Number of coordinates that follow from loads, and of bodies that have any.
 fn free_coordinates(assembly: &StaticAssembly) -> (usize, usize) {
     let free = loaded(assembly).map(|body| (0..5).filter(|i| body.given(*i).is_none()).count());
     free.fold((0, 0), |(all, bodies), own| (all + own, bodies + usize::from(own > 0)))
@@ -129,13 +130,13 @@ fn springs_to_ground(assembly: &StaticAssembly) -> usize {
     loaded(assembly).flat_map(|body| body.springs).filter(|spring| *spring != 0.0).count()
 }
 
-/// What each evaluation does, read from the items.
+/// Stages of each evaluation, read from the items.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StaticSteps {
     pub search: bool,
     pub foundation: bool,
     pub springs: bool,
-    /// Of each bearing: gravity on its balls, centrifugal force on them.
+    /// For each bearing: gravity on its balls, centrifugal force on them.
     pub ball_forces: Vec<[bool; 2]>,
     pub seats: Vec<bool>,
 }

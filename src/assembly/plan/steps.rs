@@ -1,4 +1,4 @@
-//! What each evaluation of a motion does, read once from the items of its plan.
+//! Stages of each evaluation of a motion, read once from the plan items.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::plan::solid::SolidSteps;
@@ -6,7 +6,7 @@ use crate::assembly::plan::{Item, Stage, Subject, does};
 use crate::members::flexible_shaft::{ElasticShaft, ShaftSteps};
 use crate::members::unbalance::swings;
 
-/// Of one bearing.
+/// Stages of one bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BearingSteps {
     pub traction: bool,
@@ -17,30 +17,30 @@ pub struct BearingSteps {
     pub ball_contact: bool,
 }
 
-/// Of one body.
+/// Stages of one body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BodySteps {
     pub foundation: bool,
     pub rotating_load: bool,
     pub unbalance: bool,
-    /// An unbalance takes part in the spin, which a torque drives.
+    /// True if an unbalance is coupled with the spin of a body driven by a torque.
     pub swings: bool,
 }
 
-/// Of a whole assembly.
+/// Stages of an assembly.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Steps {
     pub gravity: bool,
     pub springs: bool,
     pub bearings: Vec<BearingSteps>,
-    /// Of each body.
+    /// Stages of each body.
     pub bodies: Vec<BodySteps>,
-    /// Bodies that have equations, in their order.
+    /// Moving bodies, in their order.
     pub moving: Vec<usize>,
-    /// Reduced solids and the seats in them.
+    /// Reduced solids and their housing fits.
     pub solids: Vec<(usize, SolidSteps)>,
     pub seats: Vec<usize>,
-    /// Shafts that bend.
+    /// Flexible shafts.
     pub shafts: Vec<(usize, ShaftSteps)>,
 }
 

@@ -1,4 +1,4 @@
-//! One step of a solid of rubber: its equilibrium, the error of what it took for granted, and its commit.
+//! One step of a solid of rubber: its equilibrium, its error, and its commit.
 
 use crate::assembly::plan::Stage;
 use crate::ch2_housing::elastomer::maxwell::{
@@ -15,8 +15,8 @@ use crate::solids::rubber::steps::{RubberSolid, Stepping};
 use crate::solids::rubber::tangent::StepLaw;
 
 impl RubberSolid<'_> {
-    /// One step that can be judged, or a pair behind a corner. Gives how many times longer the next one may
-    /// be; leaves the state alone if it fails.
+    /// Takes one step that can be judged, or a pair behind a corner. Returns the factor for the length of the next;
+    /// leaves the state unchanged if it fails.
     pub(crate) fn attempt(&mut self, step: f64, end: f64) -> Result<f64, Stop> {
         let viscous = !self.search.model.problem.material.maxwell.is_empty();
         if !(self.judges() && viscous) {
@@ -39,7 +39,7 @@ impl RubberSolid<'_> {
         if pair.is_err() {
             (self.state, self.scale) = anchor;
         }
-        // Of a half; the next one is a whole.
+        // Relative to a half; the next one is a whole.
         pair.map(|longer| (0.5 * longer).max(0.5))
     }
 
@@ -60,8 +60,7 @@ impl RubberSolid<'_> {
         }
     }
 
-    /// Finds the equilibrium at the end of a step and changes nothing else. A step that ends at a jump
-    /// ends before it.
+    /// Finds the equilibrium at the end of a step without any other change. A step that ends at a jump ends before it.
     pub(crate) fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), Stop> {
         let end = if step > 0.0 { end.next_down() } else { end };
         self.carry(step)?;
@@ -75,7 +74,7 @@ impl RubberSolid<'_> {
                 *u = std::array::from_fn(|i| u[i] + step * v[i]);
             }
             match self.search.converge(at, &law, &self.options.convergence) {
-                // Rubber that hardly changes its volume goes along its tangent where it goes along no straight line.
+                // Nearly incompressible rubber follows its tangent where it does not follow a straight line.
                 Err(Stop::Step(_)) => self.search.tangent.forget(),
                 outcome => return outcome,
             }
@@ -85,7 +84,7 @@ impl RubberSolid<'_> {
         self.search.converge(at, &law, &self.options.convergence)
     }
 
-    /// What a step of `step` s owes to the state before it.
+    /// Sets the part of the stress that depends on the state before a step of `step` s.
     pub(crate) fn carry(&mut self, step: f64) -> Result<(), RubberError> {
         let maxwell = &self.search.model.problem.material.maxwell;
         self.factors.set(maxwell, step)?;
@@ -100,7 +99,7 @@ impl RubberSolid<'_> {
         Ok(())
     }
 
-    /// Estimated error of the step just solved: how many times longer the next may be.
+    /// Factor for the length of the next step, from the estimated error of the step just solved.
     fn judged(&mut self, step: f64) -> Result<f64, Stop> {
         let Stepping::Accuracy(accuracy) = self.options.stepping else { return Ok(3.0) };
         let model = self.search.model;
@@ -129,19 +128,19 @@ impl RubberSolid<'_> {
             return Err(StepFailure::Inaccurate.into());
         }
         self.scale = scale;
-        // Nine tenths of the room that a second-order error leaves; not more than threefold.
+        // Nine tenths of the length allowed by a second-order error, at most threefold.
         let little = error <= 0.09 * allowed;
         Ok(if little { 3.0 } else { 0.9 * (allowed / error).sqrt() })
     }
 
-    /// Takes what [`RubberSolid::equilibrium`] found as the state.
+    /// Takes the solution of [`RubberSolid::equilibrium`] as the state.
     pub(crate) fn accept(&mut self, step: f64, end: f64) {
         let model = self.search.model;
         let material = &model.problem.material;
         let (terms, shear_modulus) = (material.maxwell.len(), material.network.shear_modulus());
         self.dashpots.set(&material.maxwell, step);
         let state = &mut self.state;
-        // Behind a sudden change nothing is known of the rates to come.
+        // Behind a sudden change the rates to come are unknown.
         let per = if step > 0.0 { 1.0 / step } else { 0.0 };
         for (at, (new, old)) in self.search.deviatoric.iter().zip(&mut state.deviatoric).enumerate()
         {
@@ -162,7 +161,7 @@ impl RubberSolid<'_> {
             state.rate[at] = change.map(|c| per * c);
             *old = *new;
         }
-        // What holds the forces of the elements, loads and supports, works against them.
+        // Work of loads and supports, which balance the forces of the elements.
         let moves = state.displacement.iter().zip(&self.search.displacement);
         let forces = state.forces.iter_mut().zip(&self.search.internal);
         for ((before, after), (old, new)) in moves.zip(forces) {
@@ -184,10 +183,10 @@ impl RubberSolid<'_> {
         self.counts.accepted += 1;
     }
 
-    /// Forces of the state that stands, after a search that failed.
+    /// Restores the forces of the present state after a failed search.
     pub(crate) fn restore_forces(&mut self) {
         self.search.displacement.copy_from_slice(&self.state.displacement);
-        // A step of nothing is never refused.
+        // A zero step is never refused.
         let _ = self.carry(0.0);
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
         self.search.return_to(Moment::at(self.state.time), &law);

@@ -1,5 +1,4 @@
-//! A bar or cube of rubber that is stretched or pressed alike everywhere, free at its sides: one point
-//! of material.
+//! A bar or cube of rubber under homogeneous tension or compression, free at its sides: one material point.
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::ch2_housing::elastomer::maxwell::{StepFactors, carried, commit};
@@ -27,7 +26,8 @@ impl<'a> Bar<'a> {
     /// At rest at t = 0.
     ///
     /// # Errors
-    /// Constants that are no rubber's.
+    ///
+    /// Invalid material constants.
     pub fn new(material: &'a Elastomer) -> Result<Bar<'a>, RubberError> {
         material.check()?;
         Ok(Bar {
@@ -42,16 +42,17 @@ impl<'a> Bar<'a> {
         })
     }
 
-    /// A step of `dt` s (zero: sudden) to the axial true strain `strain`; the side that frees the bar of
-    /// lateral stress is found by Newton's method.
+    /// A step of `dt` s (zero: sudden) to the axial true strain `strain`; the lateral stretch without lateral stress is
+    /// found by Newton's method.
     ///
     /// # Errors
-    /// A negative step; a strain that the material cannot bear, or that leaves no side free of stress; the
-    /// bar then stays as it was.
+    ///
+    /// A negative step; a strain beyond the material's limit, or without a stress-free lateral stretch. The bar then
+    /// stays unchanged.
     pub fn step(&mut self, dt: f64, strain: f64) -> Result<(), RubberError> {
         self.factors.set(&self.material.maxwell, dt)?;
         let axial = libm::expm1(strain);
-        // From the sides that keep the deviator of the step before: the volume as it was.
+        // Start with constant volume.
         let kept = (1.0 + self.axial) / (1.0 + axial);
         let mut lateral = (1.0 + self.lateral) * kept.sqrt() - 1.0;
         let network = &self.material.network;
@@ -68,7 +69,7 @@ impl<'a> Bar<'a> {
             let slope = (of_whole[1][1] + of_whole[1][2] + gain * (of_own[1][1] + of_own[1][2]))
                 * (1.0 + lateral);
             let step = -total[1] / slope;
-            // As far as rounding lets it fall.
+            // Converged to rounding.
             let done = total[1].abs() <= 1e-15 * scale
                 || (total[1].abs() <= 1e-11 * scale && total[1].abs() >= 0.5 * last);
             if done {
@@ -82,7 +83,7 @@ impl<'a> Bar<'a> {
                 return Ok(());
             }
             last = total[1].abs();
-            // No more than half of the side at once.
+            // At most half of the lateral stretch at once.
             lateral += step.clamp(-0.5 * (1.0 + lateral), 0.5 * (1.0 + lateral));
         }
         let failure =

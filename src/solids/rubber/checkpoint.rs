@@ -1,4 +1,4 @@
-//! All that steps of a solid of rubber go on from with the same bits.
+//! Checkpoint of a solid of rubber, from which its steps continue with the same bits.
 
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::Sym3;
@@ -6,31 +6,30 @@ use crate::kinematics::vec3::Vec3;
 use crate::solids::rubber::model::RubberModel;
 use crate::solids::rubber::steps::StepCounts;
 
-/// The state after an accepted step: nothing else is kept from step to step.
+/// The state after an accepted step, complete.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RubberState {
     /// s.
     pub time: f64,
-    /// m, one for each node.
+    /// Displacement of each node, m.
     pub displacement: Vec<Vec3>,
     /// DEV S of the network at the quadrature points, Pa.
     pub deviatoric: Vec<Sym3>,
     /// Stresses of the Maxwell elements, one point after the other, Pa.
     pub history: Vec<Sym3>,
-    /// The last step (s) and the rates of displacement (m/s) and DEV S (Pa/s) in it; a step of zero behind
-    /// a corner.
+    /// The last step (s) and the rates of displacement (m/s) and DEV S (Pa/s) in it; zero behind a corner.
     pub last: f64,
     pub velocity: Vec<Vec3>,
     pub rate: Vec<Sym3>,
     /// Forces of the elements on the nodes, N.
     pub forces: Vec<Vec3>,
-    /// Work of loads and supports so far, by the trapezium rule over the steps, J.
+    /// Work of loads and supports so far, by the trapezoidal rule over the steps, J.
     pub work: f64,
-    /// What the dashpots have taken so far by the law of small strain, J.
+    /// Energy dissipated by dashpots so far by the law of small strain, J.
     pub dissipated: f64,
-    /// What the stresses of the Maxwell elements did beyond that law, J.
+    /// Work of the Maxwell stresses beyond that law, J.
     pub beyond: f64,
-    /// Of the nodes, m/s and m/s², where they have inertia.
+    /// Velocities and accelerations of the nodes, m/s and m/s², with inertia.
     pub speed: Vec<Vec3>,
     pub acceleration: Vec<Vec3>,
 }
@@ -54,7 +53,7 @@ impl RubberState {
     }
 }
 
-/// The state that the factors at hand are of: a search begins with them.
+/// The state of the present factors, with which a search begins.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Factored {
     /// See [`crate::solids::rubber::tangent::StepLaw`].
@@ -68,7 +67,7 @@ pub struct Factored {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RubberCheckpoint {
     pub state: RubberState,
-    /// What the next step should be, s, and the largest total deviatoric stress so far, Pa.
+    /// Length of the next step, s, and the largest total deviatoric stress so far, Pa.
     pub next: f64,
     pub scale: f64,
     pub counts: StepCounts,
@@ -78,7 +77,7 @@ pub struct RubberCheckpoint {
 }
 
 impl RubberCheckpoint {
-    /// The long parts, one behind the other.
+    /// The long parts as one list.
     pub fn numbers(&self) -> Vec<f64> {
         let state = &self.state;
         let of_nodes = [&state.displacement, &state.velocity, &state.forces];
@@ -93,15 +92,15 @@ impl RubberCheckpoint {
         numbers
     }
 
-    /// How many [`RubberCheckpoint::numbers`] there are of a body of so many nodes, quadrature points and
-    /// Maxwell elements.
+    /// Length of [`RubberCheckpoint::numbers`] for a body of this number of nodes, quadrature points and Maxwell
+    /// elements.
     pub fn length(&self, [nodes, points, terms]: [usize; 3]) -> usize {
         let factored = if self.factored.is_some() { 3 * nodes + 6 * points } else { 0 };
         9 * nodes + 6 * points * (2 + terms) + factored
     }
 
-    /// Takes the long parts from where [`RubberCheckpoint::numbers`] left them; `None` if they are not
-    /// as many as those of a body of so many nodes, quadrature points and Maxwell elements.
+    /// Restores the long parts from [`RubberCheckpoint::numbers`]; `None` if their number is not that of a body of this
+    /// number of nodes, quadrature points and Maxwell elements.
     #[must_use]
     pub fn with_numbers(mut self, [nodes, points, terms]: [usize; 3], all: &[f64]) -> Option<Self> {
         let mut rest = all;

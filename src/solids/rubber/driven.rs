@@ -1,7 +1,7 @@
-//! Implicit steps of rubber with inertia whose bonded nodes are carried by bodies.
+//! Implicit steps of rubber with inertia whose bonded nodes move with bodies.
 //!
-//! Newmark's average acceleration: the mean of the accelerations at both ends acts over a step. It neither makes nor
-//! loses energy in an elastic solid and is stable in steps of any length; what damps is the rubber.
+//! Newmark's average acceleration: the mean of the accelerations at both ends acts over a step. It conserves energy in
+//! an elastic solid and is stable in steps of any length; damping is that of the rubber.
 
 use crate::kinematics::vec3::Vec3;
 use crate::solids::rubber::error::RubberError;
@@ -11,9 +11,10 @@ use crate::solids::rubber::steps::RubberSolid;
 use crate::solids::rubber::tangent::StepLaw;
 
 impl RubberSolid<'_> {
-    /// Relaxed and still with the nodes that bodies carry displaced by so much (m).
+    /// Relaxed and at rest with the nodes of bodies displaced (m).
     ///
     /// # Errors
+    ///
     /// [`RubberError::NoEquilibrium`].
     pub fn rest_with(
         &mut self,
@@ -33,9 +34,10 @@ impl RubberSolid<'_> {
         Ok(())
     }
 
-    /// One step of `step` s to where the nodes that bodies carry are displaced by so much (m).
+    /// One step of `step` s to displacements (m) of the nodes of bodies.
     ///
     /// # Errors
+    ///
     /// [`RubberError::NoEquilibrium`]; the state is then that before the step.
     pub fn driven_step(
         &mut self,
@@ -66,8 +68,8 @@ impl RubberSolid<'_> {
         }
     }
 
-    /// Where the nodes get in a step of `step` s without the acceleration at its end; what a displacement from there
-    /// makes of that, 1/s². Nothing of a body without inertia.
+    /// Positions after a step of `step` s without the acceleration at its end, and the acceleration per displacement
+    /// from there, 1/s²; zero without inertia.
     pub(crate) fn newmark_predictor(&mut self, step: f64) -> f64 {
         if self.search.model.mass.is_empty() || step == 0.0 {
             return 0.0;
@@ -80,7 +82,7 @@ impl RubberSolid<'_> {
         4.0 / (step * step)
     }
 
-    /// Speeds and accelerations at the end of a step of `step` s that has been found.
+    /// Velocities and accelerations at the end of a converged step of `step` s.
     pub(crate) fn accelerate(&mut self, step: f64) {
         if self.search.model.mass.is_empty() || step == 0.0 {
             return;
@@ -97,7 +99,7 @@ impl RubberSolid<'_> {
         }
     }
 
-    /// Of the nodes that have inertia, J.
+    /// Kinetic energy of the nodes with inertia, J.
     pub fn kinetic_energy(&self) -> f64 {
         let squares = self.state.speed.iter().map(|v| v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
         0.5 * self.search.model.mass.iter().zip(squares).map(|(m, square)| m * square).sum::<f64>()

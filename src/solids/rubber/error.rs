@@ -1,4 +1,4 @@
-//! What goes wrong with a solid of rubber.
+//! Errors of a solid of rubber.
 
 use crate::ch2_housing::elastomer::ElastomerError;
 use crate::kinematics::vec3::Vec3;
@@ -22,13 +22,13 @@ pub enum RubberError {
          allowed"
     )]
     NotSettled { vectors: usize, change: f64, tolerance: f64 },
-    #[error("elements of four nodes; rubber needs those of ten")]
+    #[error("elements of four nodes; rubber needs ten-node elements")]
     FourNodes,
     #[error("no memory for the factors of the stiffness, {:.2} GB", 1e-9 * bytes)]
     NoMemory { bytes: f64 },
-    #[error("the body or a part of it is free to move; hold it")]
+    #[error("the body or a part of it is free to move; fix it")]
     Free,
-    /// Steps were halved until nothing was left to halve.
+    /// Steps were halved down to the smallest.
     #[error(
         "no equilibrium was found after t = {} s: a step of {step:.3e} s ended where {failure}",
         rounded(*time)
@@ -39,14 +39,14 @@ pub enum RubberError {
     Stopped { time: f64 },
 }
 
-/// Why a step could not be taken.
+/// Failure of a step.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum StepFailure {
     #[error(
-        "{iterations} iterations left {residual:.3e} N unbalanced beside forces of up to {scale:.3e} N"
+        "{iterations} iterations left a residual of {residual:.3e} N for forces of up to {scale:.3e} N"
     )]
     NotConverged { residual: f64, scale: f64, iterations: usize },
-    #[error("element {element} at {} is turned inside out (volume ratio {ratio:.3})", place(at))]
+    #[error("element {element} at {} is inverted (volume ratio {ratio:.3})", place(at))]
     Inverted { element: usize, at: Vec3, ratio: f64 },
     #[error("in element {element} at {} {source}", place(at))]
     Material { element: usize, at: Vec3, source: ElastomerError },
@@ -64,7 +64,7 @@ pub enum StepFailure {
     Inaccurate,
 }
 
-/// Of a factorisation at rest.
+/// Error of a factorisation at rest.
 pub fn at_rest(error: FactorError) -> RubberError {
     match error {
         FactorError::NotPositiveDefinite { .. } => RubberError::Free,

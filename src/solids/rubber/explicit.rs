@@ -1,4 +1,4 @@
-//! Rubber in explicit steps (2.15), (3.12): nodes move without damping, the rubber having its own.
+//! Rubber in explicit steps (2.15), (3.12): nodes without damping other than the rubber's own.
 //!
 //! The steps are those of any solid ([`ExplicitSolid`]); the forces are of four-node elements with the eight-chain
 //! network and its Maxwell elements, whose history each step commits once (2.13).
@@ -23,29 +23,29 @@ use crate::solids::tet4_blocks::Node;
 /// A solid of one rubber in four-node elements, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RubberBody {
-    /// Undeformed places, m.
+    /// Undeformed positions, m.
     pub nodes: Vec<Vec3>,
     pub elements: Vec<[u32; 4]>,
     pub material: Elastomer,
     /// kg/m³.
     pub density: f64,
     pub mean_stress: MeanStress,
-    /// Masses are this many times the true ones, for longer steps in slow motions; weight stays what it is.
-    /// 1 is the true motion. What it does to a motion of frequency f grows with this times f².
+    /// Factor on all masses, for longer steps in slow motions; weight is unchanged. 1 is the true motion. The error in
+    /// a motion of frequency f grows with this times f².
     pub mass_scale: f64,
-    /// Held or moved displacement components.
+    /// Fixed or moved displacement components.
     pub prescribed: Vec<Prescribed>,
     pub loads: Vec<Load>,
     /// m/s².
     pub gravity: Vec3,
 }
 
-/// The step of a rubber body and what it rests on.
+/// Step limit of a rubber body, and its basis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RubberStepLimit {
     pub limit: SolidStepLimit,
-    /// Deviatoric stiffness over the network's in the fastest motion that the step must follow; 1 + Σγ where the
-    /// step is far shorter than every relaxation time.
+    /// Ratio of the deviatoric stiffness to the network's in the fastest motion of the step; 1 + Σγ for a step far
+    /// shorter than every relaxation time.
     pub stiffening: f64,
     pub mass_scale: f64,
 }
@@ -54,7 +54,8 @@ impl RubberBody {
     /// The body as an elastic one of its first instant at rest: with 1 + Σγ times the network's shear modulus.
     ///
     /// # Errors
-    /// A mass scale that is not positive; as [`SolidModel::new`].
+    ///
+    /// A mass scale that is not positive; those of [`SolidModel::new`].
     pub fn model(&self) -> Result<SolidModel, RubberError> {
         let scale = self.mass_scale;
         if !(scale > 0.0 && scale.is_finite()) {
@@ -79,7 +80,8 @@ impl RubberBody {
     /// Forces of its elements, at rest and relaxed.
     ///
     /// # Errors
-    /// An element of no volume.
+    ///
+    /// An element of zero volume.
     pub fn forces(&self) -> Result<RubberForces, RubberError> {
         let model = self.model()?;
         let sound = "elements were checked when the model was made";
@@ -91,11 +93,12 @@ impl RubberBody {
 }
 
 impl ExplicitSolid {
-    /// Rubber in central differences from t = 0, from given displacements and velocities (m, m/s), one for
-    /// each node; it has rested in that state.
+    /// Rubber in central differences from t = 0, from given displacements and velocities (m, m/s), one for each node,
+    /// in which it is relaxed.
     ///
     /// # Errors
-    /// As [`RubberBody::model`]; a step beyond the stability limit.
+    ///
+    /// Those of [`RubberBody::model`]; a step beyond the stability limit.
     pub fn of_rubber(
         body: &RubberBody,
         stepping: SolidStepping,
@@ -122,10 +125,12 @@ impl ExplicitSolid {
         Ok((solid, found))
     }
 
-    /// Rubber at rest in given displacements (m), in `fraction` of the longest step; what it prescribes is carried
-    /// along by bodies ([`ExplicitSolid::carry`]), which have the mass of those nodes. What its dashpots take is counted.
+    /// Rubber at rest with given displacements (m), in `fraction` of the longest step; its prescribed nodes move with
+    /// bodies ([`ExplicitSolid::carry`]), which have their mass. Dissipation is counted.
     ///
     /// # Errors
+    ///
+    /// Those of [`RubberBody::model`].
     /// As [`RubberBody::model`].
     pub fn of_carried_rubber(
         body: &RubberBody,
@@ -147,8 +152,7 @@ impl ExplicitSolid {
         Ok(solid)
     }
 
-    /// Puts nodes that bodies carry where they are now and lets them go on at such a rate: node, displacement (m), rate
-    /// (m/s).
+    /// Sets nodes of bodies to their present displacement and rate: node, displacement (m), rate (m/s).
     pub fn carry(&mut self, nodes: impl Iterator<Item = (u32, Vec3, Vec3)>) {
         for (node, displacement, rate) in nodes {
             self.displacement[node as usize][..3].copy_from_slice(&displacement);
@@ -156,14 +160,14 @@ impl ExplicitSolid {
         }
     }
 
-    /// Forces and memory of a solid of rubber.
+    /// Forces and history of a solid of rubber.
     pub fn rubber(&self) -> Option<&RubberForces> {
         self.rubber.as_deref()
     }
 }
 
-/// The largest stable step at given displacements. The longer the step, the less of the fast Maxwell elements it
-/// meets, and the longer it may be: found from below, so that every value tried is stable.
+/// The largest stable step at given displacements. Fast Maxwell elements relax within a long step, which reduces the
+/// stiffness and allows a longer step: found from below, so that every value tried is stable.
 fn rubber_step_limit(
     body: &RubberBody,
     model: &SolidModel,
@@ -172,7 +176,7 @@ fn rubber_step_limit(
 ) -> RubberStepLimit {
     let maxwell = &body.material.maxwell;
     let still = vec![[0.0; 4]; displacement.len()];
-    // The bound holds at rest, for either mean stress: averages do not stiffen.
+    // The bound holds at rest, for either mean stress: averages do not increase the stiffness.
     let mut limit = step_limit_within(model, &still, ExplicitMethod::CentralDifferences, 0);
     let mut stiffening = alternating_factor(maxwell, 0.0);
     for _ in 0..20 {
@@ -196,7 +200,7 @@ fn rubber_step_limit(
 }
 
 /// Adds M^(−½) K M^(−½) `x`, K the derivative of the forces with the network's deviatoric stress times `factor`, by
-/// central differences; the change is a millionth of a side of the smallest element or less.
+/// central differences with a displacement of at most a millionth of a side of the smallest element.
 fn stiffness_product(
     forces: &mut RubberForces,
     root: &[Vec3],

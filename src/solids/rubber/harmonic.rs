@@ -1,11 +1,10 @@
-//! Small vibrations of a solid of rubber about rest, at any number of frequencies for one factorisation.
+//! Small vibrations of a solid of rubber about rest, at any number of frequencies with one factorisation.
 //!
-//! At small amplitude the stiffness of a body of one rubber is g D + V: D the network's deviatoric
-//! part, V the part of volume, both real, and g(ω) the complex factor of the Maxwell elements. Of u(g),
-//! the displacements that answer a unit motion of the supports, all derivatives at one real g₀ come from
-//! the same factors, each by one solve. The energy's stationary value over the space that they span is
-//! the complex stiffness: its error is the square of what that space misses, and falls by the same
-//! ratio with each vector.
+//! At small amplitude the stiffness of a body of one rubber is g D + V: D the deviatoric part of the network, V the
+//! volumetric part, both real, and g(ω) the complex factor of the Maxwell elements. All derivatives of u(g), the
+//! response to a unit motion of the supports, at one real g₀ follow from the same factors, each by one solve. The
+//! stationary value of the energy over their span is the complex stiffness: its error is the square of the error of the
+//! span, and falls by the same ratio with each vector.
 
 use crate::ch2_housing::elastomer::maxwell::complex_factor;
 use crate::elements::tet10::POINTS;
@@ -20,27 +19,27 @@ use crate::solids::rubber::tangent::{StepLaw, Tangent};
 use crate::solids::tangent::PRESCRIBED;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Stiffness against one motion of the supports, N/m where the motion is a unit one.
+/// Stiffness against one motion of the supports, N/m for a unit motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComplexStiffness {
     /// In phase with the displacement.
     pub storage: f64,
-    /// A quarter of a cycle ahead of it.
+    /// A quarter of a cycle ahead of the displacement.
     pub loss: f64,
-    /// How much the last vector changed it, over its magnitude: what the next would change less. Zero where
-    /// the first one said all.
+    /// Relative change by the last vector; the next would change less. Zero if the first vector is exact.
     pub change: f64,
 }
 
-/// Vectors beyond which no more are taken.
+/// Largest number of vectors.
 const MOST_VECTORS: usize = 40;
 
-/// Answers to the motion that the prescribed components make at time `t`, at each of `pulsations` rad/s; zero
-/// is the relaxed network, infinity a sudden motion. Vectors are added until none of the answers changes by
-/// more than `tolerance` of itself, or until there is no further vector.
+/// Response to the motion of the prescribed components at time `t`, at each of `pulsations` rad/s; zero is the relaxed
+/// network, infinity a sudden motion. Vectors are added until none of the responses changes by more than `tolerance` of
+/// itself, or until there is no further vector.
 ///
 /// # Errors
-/// A body that is free to move; no memory; a negative pulsation; answers that do not settle.
+///
+/// A body that is free to move; no memory; a negative pulsation; responses that do not converge.
 pub fn complex_stiffness(
     model: &RubberModel,
     t: f64,
@@ -84,12 +83,12 @@ pub fn complex_stiffness(
     Err(RubberError::NotSettled { vectors: MOST_VECTORS, change, tolerance })
 }
 
-/// The motion and its derivatives by g, and what both parts of the stiffness make of them.
+/// The motion and its derivatives by g, with the forces of both parts of the stiffness.
 struct Space<'a> {
     model: &'a RubberModel,
     tangent: Tangent,
     middle: f64,
-    /// The first moves the supports, the others do not; those are orthonormal by the stiffness at g₀.
+    /// The first vector moves the supports, the others do not; those are orthonormal under the stiffness at g₀.
     vectors: Vec<Vec<Vec3>>,
     shear: Vec<Vec<Vec3>>,
     volume: Vec<Vec<Vec3>>,
@@ -134,7 +133,7 @@ impl<'a> Space<'a> {
         self.volume.push(volume);
     }
 
-    /// Adds the next derivative; says whether there was anything new in it.
+    /// Adds the next derivative; returns whether it was new.
     fn grow(&mut self) -> bool {
         let Some(last) = self.shear.last() else { return false };
         let mut right = vec![0.0; self.model.unknowns.count];
@@ -175,7 +174,7 @@ impl<'a> Space<'a> {
         true
     }
 
-    /// Stationary energies over the space.
+    /// Stationary energies over the span.
     fn answers(&self, factors: &[Complex<f64>]) -> Vec<ComplexStiffness> {
         let count = self.vectors.len();
         let gram = |forces: &[Vec<Vec3>]| {
@@ -218,8 +217,7 @@ fn scatter(model: &RubberModel, unknowns: &[f64], displacement: &mut [Vec3]) {
     }
 }
 
-/// What small displacements from rest make of the network's deviatoric part and of the part of volume: the
-/// forces that hold them, N.
+/// Forces for small displacements from rest, N, of the network's deviatoric part and of the volumetric part.
 fn forces_at_rest(model: &RubberModel, displacement: &[Vec3]) -> (Vec<Vec3>, Vec<Vec3>) {
     let network = &model.problem.material.network;
     let double = 2.0 * network.shear_modulus();

@@ -1,4 +1,4 @@
-//! What a solid of rubber holds: the energy of its network and its stresses.
+//! Energy of the network and stresses of a solid of rubber.
 
 use crate::ch2_housing::elastomer::maxwell::spring_energy;
 use crate::elements::tet10::{POINTS, Tet10};
@@ -12,11 +12,12 @@ use crate::solids::rubber::model::RubberModel;
 use crate::solids::rubber::tangent::{at_points, in_element, mean_stresses};
 use crate::solids::stress::{at_ten_nodes, average_at_nodes};
 
-/// Energy of the network at given displacements, J: of the chains at the quadrature points and of volume around
-/// the corner nodes, whose derivatives the forces are.
+/// Energy of the network at given displacements, J: of the chains at the quadrature points and of volume around the
+/// corner nodes. Its derivatives are the forces.
 ///
 /// # Errors
-/// An element turned inside out or beyond what its material can bear.
+///
+/// An inverted element, or one beyond the material's limit.
 pub fn network_energy(model: &RubberModel, displacement: &[Vec3]) -> Result<f64, StepFailure> {
     let network = &model.problem.material.network;
     let mut energy = 0.0;
@@ -35,10 +36,11 @@ pub fn network_energy(model: &RubberModel, displacement: &[Vec3]) -> Result<f64,
     Ok(energy)
 }
 
-/// Smallest and largest volume around a corner node, over what it is at rest, less one.
+/// Smallest and largest volume around a corner node, relative to that at rest, less one.
 ///
 /// # Errors
-/// An element turned inside out.
+///
+/// An inverted element.
 pub fn volume_changes(model: &RubberModel, displacement: &[Vec3]) -> Result<[f64; 2], StepFailure> {
     let mut means = vec![0.0; model.patches.len()];
     mean_stresses(model, displacement, &mut means)?;
@@ -48,10 +50,11 @@ pub fn volume_changes(model: &RubberModel, displacement: &[Vec3]) -> Result<[f64
     }))
 }
 
-/// Length of the longest chain of the network over that of a straight one.
+/// Length of the longest chain of the network, relative to a straight one.
 ///
 /// # Errors
-/// An element turned inside out.
+///
+/// An inverted element.
 pub fn longest_chain(model: &RubberModel, displacement: &[Vec3]) -> Result<f64, StepFailure> {
     let network = &model.problem.material.network;
     let mut longest = 0.0f64;
@@ -76,24 +79,25 @@ pub fn maxwell_energy(model: &RubberModel, state: &RubberState) -> f64 {
     })
 }
 
-/// What became of the work of loads and supports, J. What Maxwell elements hold and have lost is known at
-/// small strain alone; what their stresses do beyond that is named, and the rest is what the length of steps leaves.
+/// Energy balance of the work of loads and supports, J. Energy and dissipation of Maxwell elements are known at small
+/// strain only; the work of their stresses beyond that is a separate term, and the rest is the error of the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RubberLedger {
-    /// Held by the network.
+    /// Stored by the network.
     pub network: f64,
-    /// Held by the springs of the Maxwell elements.
+    /// Stored by the springs of the Maxwell elements.
     pub springs: f64,
-    /// Taken by their dashpots.
+    /// Dissipated by their dashpots.
     pub dissipated: f64,
-    /// What the stresses of the Maxwell elements did beyond both.
+    /// Work of the Maxwell stresses beyond both.
     pub beyond: f64,
     pub work: f64,
 }
 
 impl RubberLedger {
     /// # Errors
-    /// As [`network_energy`].
+    ///
+    /// Those of [`network_energy`].
     pub fn of(model: &RubberModel, state: &RubberState) -> Result<RubberLedger, StepFailure> {
         Ok(RubberLedger {
             network: network_energy(model, &state.displacement)?,
@@ -104,7 +108,7 @@ impl RubberLedger {
         })
     }
 
-    /// What is held and was taken, less what was put in.
+    /// Stored and dissipated energy, less the work put in.
     pub fn residual(&self) -> f64 {
         self.network + self.springs + self.dissipated + self.beyond - self.work
     }
@@ -115,14 +119,15 @@ impl RubberLedger {
 pub struct RubberStresses {
     /// Means of the elements by undeformed volume.
     pub cells: Vec<Sym3>,
-    /// Continued from the quadrature points and averaged over the elements at a node.
+    /// Extrapolated from the quadrature points and averaged over the elements at a node.
     pub nodes: Vec<Sym3>,
 }
 
 /// Cauchy stress at the quadrature points of every element, Pa: of network, Maxwell elements and volume.
 ///
 /// # Errors
-/// An element turned inside out.
+///
+/// An inverted element.
 pub fn point_stresses(
     model: &RubberModel,
     state: &RubberState,
@@ -152,7 +157,8 @@ pub fn point_stresses(
 /// Stresses of elements and at nodes.
 ///
 /// # Errors
-/// An element turned inside out.
+///
+/// An inverted element.
 pub fn stresses(model: &RubberModel, state: &RubberState) -> Result<RubberStresses, StepFailure> {
     let at_points = point_stresses(model, state)?;
     let mean = |(stresses, tet): (&[Sym3; POINTS], &Tet10)| {

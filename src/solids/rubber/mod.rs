@@ -1,6 +1,5 @@
-//! Solids of rubber: implicit steps of ten-node elements with a continuous mean stress, without inertia or (where bodies
-//! carry their bonded nodes) with it; the response to small vibrations; a homogeneous bar; four-node elements for
-//! explicit steps.
+//! Solids of rubber: implicit steps of ten-node elements with a continuous mean stress, without inertia or (with bonded
+//! nodes on bodies) with it; small vibrations; a homogeneous bar; four-node elements for explicit steps.
 mod attempt;
 pub mod bar;
 pub mod checkpoint;

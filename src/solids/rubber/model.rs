@@ -1,4 +1,4 @@
-//! A solid of rubber as plain data, and with everything precomputed.
+//! A solid of rubber as plain data, and its model with all constants.
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::elements::tet10::{POINTS, Tet10, lumped_mass};
@@ -14,40 +14,40 @@ use crate::solids::tangent::{Unknowns, pattern_over};
 /// A solid of one rubber in ten-node elements, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RubberProblem {
-    /// Undeformed places, m.
+    /// Undeformed positions, m.
     pub nodes: Vec<Vec3>,
     pub elements: Vec<[u32; 10]>,
     pub material: Elastomer,
-    /// Held or moved displacement components.
+    /// Fixed or moved displacement components.
     pub prescribed: Vec<Prescribed>,
     pub loads: Vec<Load>,
 }
 
-/// A problem with everything precomputed.
+/// A problem with all constants.
 #[derive(Clone, Debug)]
 pub struct RubberModel {
     pub problem: RubberProblem,
     pub tets: Vec<Tet10>,
-    /// Where volume is averaged: around each corner node.
+    /// Patches for the averaged volume: one around each corner node.
     pub patches: Vec<Patch>,
     /// The patches at the corners of each element.
     pub patches_of: Vec<[u32; 4]>,
     pub unknowns: Unknowns,
-    /// kg, one for each node; none where its mass is left out.
+    /// kg, one for each node; empty without inertia.
     pub mass: Vec<f64>,
 }
 
-/// When loads and prescribed displacements are taken.
+/// Time of loads and prescribed displacements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// s.
     pub time: f64,
-    /// How much of the jumps at that time is done: 1 is all.
+    /// Fraction of the jumps at that time: 1 is all.
     pub share: f64,
 }
 
 impl Moment {
-    /// With all that happens at that time.
+    /// With all jumps at that time.
     pub fn at(time: f64) -> Moment {
         Moment { time, share: 1.0 }
     }
@@ -62,7 +62,7 @@ impl Moment {
     }
 }
 
-/// What a profile was just before a time; before t = 0 there was nothing.
+/// Value of a profile just before a time; zero before t = 0.
 fn before(profile: &Profile, t: f64) -> f64 {
     if t > 0.0 { profile.value(t.next_down()) } else { 0.0 }
 }
@@ -70,7 +70,7 @@ fn before(profile: &Profile, t: f64) -> f64 {
 /// The elements around a corner node.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Patch {
-    /// Element and which of its corners it is.
+    /// Element and index of its corner.
     pub elements: Vec<(u32, u8)>,
     /// Their nodes, ascending.
     pub nodes: Vec<u32>,
@@ -80,8 +80,8 @@ pub struct Patch {
 
 impl RubberModel {
     /// # Errors
-    /// Constants that are no rubber's, a folded element, a node or axis out of range, a component prescribed
-    /// twice.
+    ///
+    /// Invalid material constants, a folded element, a node or axis out of range, a component prescribed twice.
     pub fn new(problem: RubberProblem) -> Result<RubberModel, RubberError> {
         problem.material.check()?;
         let count = problem.nodes.len();
@@ -99,9 +99,10 @@ impl RubberModel {
         RubberModel::of_elements(problem, tets, None)
     }
 
-    /// From elements that have been made, and where volume is averaged if not around corner nodes.
+    /// From existing elements, with other patches than those around corner nodes if given.
     ///
     /// # Errors
+    ///
     /// A node or axis out of range, a component prescribed twice.
     pub(crate) fn of_elements(
         problem: RubberProblem,
@@ -149,11 +150,11 @@ impl RubberModel {
         pattern_over(self.problem.nodes.len(), lists(&self.patches), &self.unknowns)
     }
 
-    /// Whether a load or a prescribed displacement jumps at time `t`.
+    /// Returns whether a load or a prescribed displacement jumps at time `t`.
     pub fn jumps(&self, t: f64) -> bool {
         self.profiles().any(|profile| {
             let (before, after) = (before(profile, t), profile.value(t));
-            // What is continuous differs by rounding of its argument.
+            // A continuous profile differs by rounding of its argument.
             (after - before).abs() > 1e-9 * (after.abs() + before.abs())
         })
     }
@@ -163,7 +164,7 @@ impl RubberModel {
         moved.chain(self.problem.loads.iter().map(|load| &load.profile))
     }
 
-    /// Sets the prescribed components of a displacement to what they are at a moment.
+    /// Sets the prescribed components of a displacement to their values at a moment.
     pub fn prescribe(&self, at: Moment, displacement: &mut [Vec3]) {
         for Prescribed { node, axis, profile } in &self.problem.prescribed {
             displacement[*node as usize][*axis] = at.value(profile);
@@ -182,7 +183,7 @@ impl RubberModel {
         }
     }
 
-    /// When a prescribed displacement or a load changes its slope, ascending.
+    /// Times at which a prescribed displacement or a load changes its slope, ascending.
     pub fn corners(&self) -> Vec<f64> {
         let mut corners: Vec<f64> = self.profiles().flat_map(|profile| profile.corners()).collect();
         corners.sort_by(f64::total_cmp);
@@ -191,8 +192,8 @@ impl RubberModel {
     }
 }
 
-/// Prescribed components from node sets of a mesh: what each set's components do, `None` being free. A
-/// component that several sets name is the first one's. Sets that a mesh lacks have no nodes.
+/// Prescribed components from node sets of a mesh, `None` for free ones. A component in several sets takes the value of
+/// the first. Missing sets have no nodes.
 pub fn supports(mesh: &TetMesh, sets: &[(&str, [Option<Profile>; 3])]) -> Vec<Prescribed> {
     let mut taken = vec![[false; 3]; mesh.nodes.len()];
     let mut prescribed = Vec::new();
@@ -233,7 +234,7 @@ fn patches(problem: &RubberProblem, tets: &[Tet10]) -> (Vec<Patch>, Vec<[u32; 4]
         }
         patches_of.push(of);
     }
-    // The last patch that has taken a node: most nodes come several times.
+    // The last patch with this node: most nodes come several times.
     let mut taken_by = vec![u32::MAX; problem.nodes.len()];
     for (patch, of) in (0u32..).zip(&mut patches) {
         for &node in

@@ -11,7 +11,7 @@ use crate::solids::rubber::model::{Moment, RubberModel};
 use crate::solids::rubber::tangent::{StepLaw, Tangent, add_forces};
 use crate::solids::tangent::PRESCRIBED;
 
-/// What the forces left unbalanced.
+/// Force residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Unbalanced {
     /// Largest on an unknown, N.
@@ -20,7 +20,7 @@ pub struct Unbalanced {
     pub scale: f64,
 }
 
-/// A search for equilibrium: displacements, and what it works with.
+/// A search for equilibrium: displacements and working memory.
 pub struct Search<'a> {
     pub model: &'a RubberModel,
     pub tangent: Tangent,
@@ -32,30 +32,30 @@ pub struct Search<'a> {
     /// Forces of the elements on the nodes, and loads, N.
     pub internal: Vec<Vec3>,
     pub loads: Vec<Vec3>,
-    /// Displacements of nodes that bodies carry, m.
+    /// Displacements of nodes of bodies, m.
     pub driven: Vec<(u32, Vec3)>,
-    /// Where the nodes would be without acceleration at the end of the step, m; with inertia only.
+    /// Positions of the nodes without acceleration at the end of the step, m; with inertia only.
     pub newmark_predictor: Vec<Vec3>,
     right: Vec<f64>,
     moves: Vec<Vec3>,
     pub iterations: usize,
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub ran: Counts,
 }
 
-/// When a search has converged, and when it gives up.
+/// Convergence criteria of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convergence {
-    /// Largest unbalanced force over the largest force at work.
+    /// Largest force residual over the largest force.
     pub tolerance: f64,
-    /// As much where it falls no further: rounding.
+    /// The same if it falls no further because of rounding.
     pub rounding: f64,
     pub most_iterations: usize,
 }
 
 impl Default for Convergence {
     fn default() -> Self {
-        // Forces of a step are good to 1e-3; what rounding leaves at B = 1e5 C_R is some 1e-9.
+        // Forces of a step are accurate to 1e-3; rounding at B = 1e5 C_R is some 1e-9.
         Convergence { tolerance: 1e-9, rounding: 1e-7, most_iterations: 20 }
     }
 }
@@ -92,11 +92,11 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Moves the prescribed components to where they are at a moment, and the others along as the
-    /// tangent in the present state has it.
+    /// Moves the prescribed components to their values at a moment, and the others by the tangent in the present state.
     ///
     /// # Errors
-    /// As [`Search::converge`].
+    ///
+    /// Those of [`Search::converge`].
     pub fn predict(&mut self, at: Moment, law: &StepLaw) -> Result<(), Stop> {
         let unbalanced = self.balance(at, law)?;
         let before = std::mem::take(&mut self.displacement);
@@ -167,11 +167,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Newton's iterations at a moment from the present displacements, with the factors of an earlier
-    /// state as long as they bring the residual down tenfold a step.
+    /// Newton iterations at a moment from the present displacements, with the factors of an earlier state as long as
+    /// they reduce the residual tenfold a step.
     ///
     /// # Errors
-    /// No convergence, an element turned inside out or beyond its material, an unstable state.
+    ///
+    /// No convergence, an inverted element or one beyond the material's limit, an unstable state.
     pub fn converge(
         &mut self,
         at: Moment,
@@ -210,7 +211,7 @@ impl<'a> Search<'a> {
 
     /// Forces in a state that was in equilibrium at a moment, after a search for another one.
     pub fn return_to(&mut self, at: Moment, law: &StepLaw) {
-        // It was found before, so that nothing can be wrong with it.
+        // The state was found before, so that it is valid.
         let _ = self.balance(at, law);
     }
 
@@ -227,7 +228,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Sets what is prescribed, and what bodies carry, to where it is at a moment.
+/// Sets prescribed components, and nodes of bodies, to their values at a moment.
 fn prescribe(model: &RubberModel, at: Moment, driven: &[(u32, Vec3)], displacement: &mut [Vec3]) {
     model.prescribe(at, displacement);
     for (node, place) in driven {
@@ -235,7 +236,7 @@ fn prescribe(model: &RubberModel, at: Moment, driven: &[(u32, Vec3)], displaceme
     }
 }
 
-/// Whether smaller steps might help.
+/// Failure of a step, with or without a chance for smaller steps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stop {
     Step(StepFailure),

@@ -1,4 +1,5 @@
-//! Whether a step of rubber keeps to the equilibria that follow from the one before it, for statics that come from rest.
+//! Checks that a step of rubber follows the path of equilibria from the one before it, for statics that start from
+//! rest.
 
 use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use crate::kinematics::vec3::{Vec3, dot};
@@ -10,19 +11,20 @@ use crate::solids::rubber::newton::Stop;
 use crate::solids::rubber::steps::RubberSolid;
 use crate::solids::rubber::tangent::StepLaw;
 
-/// What keeps steps to the equilibria that follow from one to the next.
+/// Limits of a step along the path of equilibria.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathLimits {
-    /// Largest change of Green's strain in a step, in the mean square over the body.
+    /// Largest change of Green's strain in a step, root mean square over the body.
     pub strain: f64,
-    /// s; shorter steps may change strains as they will.
+    /// Step below which changes of strain are not limited, s.
     pub short: f64,
-    /// Of the work of a step, what may be missing in the energy after it: a jump loses some however short the step is.
+    /// Largest fraction of the work of a step that may be missing in the energy after it: a jump loses some however
+    /// short the step is.
     pub lost: f64,
 }
 
 impl RubberSolid<'_> {
-    /// Whether what [`RubberSolid::equilibrium`] found is near, follows without a jump and is stable.
+    /// Checks that the solution of [`RubberSolid::equilibrium`] is close, without a jump, and stable.
     pub(crate) fn check_path(&mut self, way: PathLimits, step: f64) -> Result<(), Stop> {
         let strain = self.strain_of_step();
         let near = strain <= way.strain || step <= way.short;
@@ -46,7 +48,7 @@ impl RubberSolid<'_> {
         }
     }
 
-    /// Change of Green's strain, in the mean square over the body.
+    /// Change of Green's strain, root mean square over the body.
     fn strain_of_step(&self) -> f64 {
         let model = self.search.model;
         let mut sum = 0.0;

@@ -1,9 +1,9 @@
-//! A bonded bushing as the bodies at its sleeves feel it: six springs and Maxwell elements beside them.
+//! Equivalent springs of a bonded bushing: six springs with parallel Maxwell elements.
 //!
-//! At small amplitude K(ω) of a bushing is no multiple of the rubber's own factor, since its volume does not relax.
-//! It still is a relaxed stiffness and a sum of k iωτ/(1 + iωτ) with k ≥ 0: the k are fitted on a grid of τ by least
-//! squares of the error over |K|, none of them negative. What is confined relaxes more slowly than its rubber: the
-//! poles lie where the shear modulus μ(s) is −λB with λ ≥ 0, of one Maxwell element at times from τ to τ(1 + γ).
+//! At small amplitude K(ω) of a bushing is no multiple of the rubber's own factor, since its volume does not relax. It
+//! still is a relaxed stiffness and a sum of k iωτ/(1 + iωτ) with k ≥ 0: the k are fitted on a grid of τ by least
+//! squares of the error over |K|, none of them negative. Confined rubber relaxes more slowly than free rubber: the
+//! poles are where the shear modulus μ(s) is −λB with λ ≥ 0, for one Maxwell element at times from τ to τ(1 + γ).
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::members::connection::{MaxwellElement, SpringDashpot};
@@ -18,19 +18,20 @@ use nalgebra::{Complex, DMatrix, DVector};
 #[derive(Clone, Debug, PartialEq)]
 pub struct BushingSpring {
     pub law: SpringDashpot,
-    /// Largest error of K over |K| of each of [`SleeveMotion::ALL`], at pulsations between those that were fitted.
+    /// Largest error of K over |K| of each of [`SleeveMotion::ALL`], at pulsations between the fitted ones.
     pub misses: [f64; 4],
 }
 
-/// Relaxation times that are tried, and pulsations that are fitted, in a decade.
+/// Relaxation times tried, and pulsations fitted, in a decade.
 const PER_DECADE: f64 = 8.0;
-/// Of the bushing's answers themselves.
+/// Tolerance of the bushing's responses.
 const SETTLED: f64 = 1e-8;
 
-/// The law of a bushing of a rubber, from `fastest` rad/s down to rest. The mesh is as
-/// [`sleeve_stiffness`] takes it.
+/// The equivalent spring of a bushing of a rubber, from `fastest` rad/s down to rest. The mesh is as in
+/// [`sleeve_stiffness`].
 ///
 /// # Errors
+///
 /// Those of [`sleeve_stiffness`]; a pulsation that is not positive and finite.
 pub fn bushing_spring(
     mesh: &TetMesh,
@@ -48,7 +49,7 @@ pub fn bushing_spring(
     let slowest = if longest > 0.0 { (0.1 / longest).min(fastest) } else { fastest };
     // Fitted at every other one, judged at those between.
     let pulsations = spread(slowest, fastest, 2.0 * PER_DECADE);
-    // What relaxes faster than any vibration of interest is stiffness lost to a dashpot.
+    // Relaxation faster than any vibration of interest acts as a dashpot.
     let mut times = spread(0.03 / fastest, longest.max(0.03 / fastest), PER_DECADE);
     // The rubber's own times are those of torsion, which changes no volume.
     let shortest = times[0];
@@ -76,7 +77,7 @@ pub fn bushing_spring(
     Ok(BushingSpring { law, misses })
 }
 
-/// Displacements and turns of a connection that a motion of the sleeve stands for.
+/// Coordinates of a connection for a motion of the sleeve.
 fn components(motion: SleeveMotion) -> &'static [usize] {
     match motion {
         SleeveMotion::Axial => &[0],
@@ -86,7 +87,7 @@ fn components(motion: SleeveMotion) -> &'static [usize] {
     }
 }
 
-/// From `low` to `high`, so many in a decade, both ends in it.
+/// Logarithmic grid from `low` to `high`, with both ends.
 fn spread(low: f64, high: f64, per_decade: f64) -> Vec<f64> {
     let decades = libm::log10(high / low);
     let steps = (decades * per_decade).ceil().max(1.0);
@@ -133,7 +134,7 @@ fn largest_miss(
         let parts = times.iter().zip(fit).map(|(time, k)| element(*time, *pulsation) * *k);
         (parts.sum::<Complex<f64>>() + relaxed - exact).norm() / exact.norm()
     };
-    // NaN stays.
+    // NaN is kept.
     let larger = |most: f64, here: f64| if here <= most { most } else { here };
     pulsations.iter().zip(answers).skip(1).step_by(2).map(miss).fold(0.0, larger)
 }
@@ -143,9 +144,9 @@ pub fn nonnegative(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let count = a.ncols();
     let mut x = DVector::zeros(count);
     let mut free: Vec<usize> = Vec::new();
-    // Slopes below rounding are none.
+    // Gradients below rounding are zero.
     let small = 1e-12 * a.norm() * b.norm();
-    // Each set of free ones is met once; far fewer are.
+    // Each set of free components occurs once; far fewer do.
     for _ in 0..10 * count {
         let slope = a.transpose() * (b - a * &x);
         let held = (0..count).filter(|j| !free.contains(j));
@@ -157,7 +158,7 @@ pub fn nonnegative(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
         loop {
             let columns = a.select_columns(&free);
             let Ok(best) = columns.svd(true, true).solve(b, 1e-14) else { return x };
-            // How far towards the best until one would be negative.
+            // Fraction of the step to the optimum at which a component becomes zero.
             let way = |(&j, best): (&usize, &f64)| {
                 if *best > 0.0 { None } else { Some((x[j] / (x[j] - best), j)) }
             };
@@ -170,7 +171,7 @@ pub fn nonnegative(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
             x[left] = 0.0;
             free.retain(|j| *j != left);
             if left == next && part == 0.0 {
-                // It wanted in by rounding alone.
+                // It became free by rounding alone.
                 return x;
             }
         }

@@ -1,4 +1,4 @@
-//! The relaxed equilibrium of a solid of rubber: long after every Maxwell element has forgotten how it came there.
+//! The relaxed equilibrium of a solid of rubber, long after all loads.
 
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
@@ -12,22 +12,22 @@ use crate::solids::rubber::path_following::PathLimits;
 use crate::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use thiserror::Error;
 
-/// An equilibrium, and what it took.
+/// An equilibrium, and its cost.
 #[derive(Clone, Debug)]
 pub struct Relaxed {
     pub state: RubberState,
-    /// Of the supports on all nodes, N.
+    /// Forces of the supports on all nodes, N.
     pub reactions: Vec<Vec3>,
-    /// Of the network, J.
+    /// Energy of the network, J.
     pub energy: f64,
-    /// Parts that supports and loads were brought up in.
+    /// Number of load steps.
     pub steps: u64,
     pub iterations: usize,
     pub factorisations: usize,
     pub ran: Counts,
 }
 
-/// No equilibrium at, or on the way to, what supports and loads ask for.
+/// No equilibrium under all, or a part, of the supports and loads.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RelaxedError {
     #[error(transparent)]
@@ -40,34 +40,36 @@ pub enum RelaxedError {
     Stopped { part: f64, reached: Vec<Reached> },
 }
 
-/// An equilibrium on the way.
+/// An intermediate equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// Of what supports and loads ask for.
+    /// Fraction of supports and loads.
     pub part: f64,
     pub displacement: Vec<Vec3>,
-    /// Of the supports on all nodes, N.
+    /// Forces of the supports on all nodes, N.
     pub reactions: Vec<Vec3>,
 }
 
-/// A part changes strains by 2 % where it is not a two-hundredth of the whole: at 5 % a bonded bushing whose way ends at 6.87 mm
-/// of 20 mm of rubber was found beyond. The jump of that bushing loses 0.7 % of the work of a tenth of a millimetre; what the
-/// trapezoidal rule misses of a smooth part falls with the square of its length, so that it passes when it is short enough.
+/// A load step changes strains by 2 % unless it is a two-hundredth of the whole: at 5 % a bonded bushing whose path
+/// ends at 6.87 mm of 20 mm of rubber was found beyond the end. The jump of that bushing loses 0.7 % of the work of a
+/// tenth of a millimetre; the error of the trapezoidal rule falls with the square of the step, so that a smooth step
+/// passes when it is short enough.
 const WAY: PathLimits = PathLimits { strain: 0.02, short: 0.005, lost: 3e-3 };
 
-/// Supports and loads are brought up together to what they are at time `t` (s): at once, or in as many parts
-/// as it takes.
+/// Equilibrium under the supports and loads at time `t` (s), increased together at once or in as many steps as needed.
 ///
 /// # Errors
+///
 /// No equilibrium; a body that is free to move; no memory.
 pub fn relaxed(model: &RubberModel, t: f64) -> Result<Relaxed, RelaxedError> {
     relaxed_while(model, t, |_| true)
 }
 
-/// As [`relaxed`], as long as what is shown the part that has been reached says to go on.
+/// As [`relaxed`]; stops when the function that is called with each intermediate equilibrium returns `false`.
 ///
 /// # Errors
-/// As there; [`RelaxedError::Stopped`].
+///
+/// The same; [`RelaxedError::Stopped`].
 pub fn relaxed_while(
     model: &RubberModel,
     t: f64,

@@ -1,4 +1,4 @@
-//! How stiff a bonded bushing is against each small rigid motion of its inner sleeve.
+//! Stiffness of a bonded bushing against each small rigid motion of its inner sleeve.
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::kinematics::vec3::Vec3;
@@ -10,7 +10,7 @@ use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::harmonic::{ComplexStiffness, complex_stiffness};
 use crate::solids::rubber::model::{RubberModel, RubberProblem, supports};
 
-/// A motion of the inner sleeve of a bushing about the X axis; the outer one is held.
+/// A motion of the inner sleeve of a bushing about the X axis; the outer one is fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SleeveMotion {
     /// Along Z; stiffness in N/m.
@@ -27,7 +27,7 @@ impl SleeveMotion {
     pub const ALL: [SleeveMotion; 4] =
         [SleeveMotion::Radial, SleeveMotion::Axial, SleeveMotion::Torsional, SleeveMotion::Conical];
 
-    /// Displacement of a place (m) by a unit of the motion, small angles.
+    /// Displacement at a position (m) per unit of the motion, small angles.
     pub fn displacement(self, [x, y, z]: Vec3) -> Vec3 {
         match self {
             SleeveMotion::Radial => [0.0, 0.0, 1.0],
@@ -37,7 +37,8 @@ impl SleeveMotion {
         }
     }
 
-    /// Whether reflection at the planes X = 0 and Y = 0 leaves the motion as it is; else it reverses it.
+    /// True for each of the planes X = 0 and Y = 0 whose reflection leaves the motion unchanged; otherwise it is
+    /// reversed.
     fn is_even(self) -> [bool; 2] {
         match self {
             SleeveMotion::Radial => [true, true],
@@ -47,8 +48,8 @@ impl SleeveMotion {
     }
 }
 
-/// Both sleeves of a mesh that [`bushing`](crate::mesh::generate::bushing) made, the inner one moved by a unit, and
-/// of a quarter its planes of symmetry.
+/// Prescribed components of both sleeves of a mesh from [`bushing`](crate::mesh::generate::bushing), the inner one
+/// moved by a unit, and of the planes of symmetry of a quarter.
 pub fn sleeve_supports(mesh: &TetMesh, part: Part, motion: SleeveMotion) -> Vec<Prescribed> {
     const HELD: Option<Profile> = Some(Profile::ZERO);
     let set = |name: &str| mesh.node_sets.get(name).map(Vec::as_slice).unwrap_or_default();
@@ -77,11 +78,12 @@ pub fn sleeve_supports(mesh: &TetMesh, part: Part, motion: SleeveMotion) -> Vec<
     prescribed
 }
 
-/// Stiffness of a whole bushing against a motion, at each of `pulsations` rad/s, as
-/// [`complex_stiffness`] has it: N/m or N·m/rad. The mesh is one of ten-node elements from
-/// [`bushing`](crate::mesh::generate::bushing), of the whole or a quarter.
+/// Stiffness of a whole bushing against a motion, at each of `pulsations` rad/s, as in [`complex_stiffness`]: N/m or
+/// N·m/rad. The mesh is one of ten-node elements from [`bushing`](crate::mesh::generate::bushing), of the whole or a
+/// quarter.
 ///
 /// # Errors
+///
 /// Elements of four nodes; those of [`RubberModel::new`] and [`complex_stiffness`].
 pub fn sleeve_stiffness(
     mesh: &TetMesh,

@@ -1,9 +1,8 @@
 //! Steps of a solid of rubber in time, without inertia: each ends in equilibrium.
 //!
-//! What makes a step inexact is that DEV S does not go straight within it. From its second difference
-//! follows the error of the Maxwell stresses, and from that the length of the next step. Steps end at
-//! the corners of loads and prescribed displacements; behind a corner there is no second difference, so
-//! that a pair of steps is taken and judged together.
+//! The error of a step is that DEV S is not linear within it. Its second difference gives the error of the Maxwell
+//! stresses, and with that the length of the next step. Steps end at the corners of loads and prescribed displacements;
+//! behind a corner there is no second difference, so that a pair of steps is taken and judged together.
 
 use crate::assembly::plan::counts::Counts;
 use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors};
@@ -17,22 +16,22 @@ use crate::solids::rubber::newton::{Convergence, Search, Stop};
 use crate::solids::rubber::path_following::PathLimits;
 use crate::solids::rubber::tangent::StepLaw;
 
-/// How long steps are.
+/// Choice of the step size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stepping {
-    /// s; halved where no equilibrium is found otherwise.
+    /// s; halved if no equilibrium is found otherwise.
     Fixed(f64),
-    /// The estimated error of a step's Maxwell stresses stays below this part of the largest total
-    /// stress so far, in the mean square over the body.
+    /// The estimated error of a step's Maxwell stresses stays below this fraction of the largest total stress so far,
+    /// root mean square over the body.
     Accuracy(f64),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepOptions {
     pub stepping: Stepping,
-    /// Steps are cut down to this part of the way to the next corner before giving up.
+    /// Smallest step, as a fraction of the time to the next corner.
     pub smallest: f64,
-    /// Where a step may only end in an equilibrium that follows from the one before it.
+    /// Limits of steps that must follow the path of equilibria.
     pub way: Option<PathLimits>,
     pub convergence: Convergence,
 }
@@ -45,15 +44,15 @@ impl Default for StepOptions {
     }
 }
 
-/// Steps done.
+/// Number of steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepCounts {
     pub accepted: u64,
-    /// Undone because no equilibrium was found or the error was too large.
+    /// Rejected for want of an equilibrium or for a large error.
     pub undone: u64,
 }
 
-/// A solid of rubber on its way.
+/// A solid of rubber at the present time.
 pub struct RubberSolid<'a> {
     pub(crate) search: Search<'a>,
     pub(crate) options: StepOptions,
@@ -62,9 +61,9 @@ pub struct RubberSolid<'a> {
     pub(crate) dashpots: DashpotFactors,
     pub(crate) carried: Vec<Sym3>,
     corners: Vec<f64>,
-    /// What the next step should be, s; zero if unknown.
+    /// Length of the next step, s; zero if unknown.
     next: f64,
-    /// Largest total deviatoric stress so far, mean square over the body, Pa.
+    /// Largest total deviatoric stress so far, root mean square over the body, Pa.
     pub(crate) scale: f64,
     pub(crate) volume: f64,
     pub counts: StepCounts,
@@ -111,12 +110,12 @@ impl<'a> RubberSolid<'a> {
         self.search.model
     }
 
-    /// The state that stands.
+    /// The present state.
     pub fn state(&self) -> &RubberState {
         &self.state
     }
 
-    /// All that the steps to come follow from.
+    /// Checkpoint for the steps to come.
     pub fn checkpoint(&self) -> RubberCheckpoint {
         let (iterations, factorisations) = self.work();
         RubberCheckpoint {
@@ -130,14 +129,15 @@ impl<'a> RubberSolid<'a> {
         }
     }
 
-    /// Goes back or on to where a checkpoint was taken; steps from there have the same bits as those that
-    /// followed it.
+    /// Continues from a checkpoint, with the same bits as the steps that followed it.
     ///
     /// # Errors
-    /// No memory for the factors; a state that is not one of this body.
+    ///
+    /// No memory for the factors; a state of another body.
     ///
     /// # Panics
-    /// If the checkpoint has other numbers of nodes or points.
+    ///
+    /// If the checkpoint has another number of nodes or points.
     pub fn restore(&mut self, kept: &RubberCheckpoint) -> Result<(), RubberError> {
         self.state.clone_from(&kept.state);
         (self.next, self.scale, self.counts) = (kept.next, kept.scale, kept.counts);
@@ -153,12 +153,12 @@ impl<'a> RubberSolid<'a> {
         })
     }
 
-    /// How often each stage ran.
+    /// Number of runs of each stage.
     pub fn ran(&self) -> &Counts {
         &self.search.ran
     }
 
-    /// Counts anew.
+    /// Resets the counts.
     pub fn forget_ran(&mut self) {
         self.search.ran = Counts::default();
     }
@@ -169,7 +169,7 @@ impl<'a> RubberSolid<'a> {
         all.map(|(inner, outer)| std::array::from_fn(|i| 0.0 - (inner[i] + outer[i]))).collect()
     }
 
-    /// m, one for each node.
+    /// Displacement of each node, m.
     pub fn displacement(&self) -> &[Vec3] {
         &self.state.displacement
     }
@@ -184,12 +184,13 @@ impl<'a> RubberSolid<'a> {
         (self.search.iterations, self.search.tangent.factorisations)
     }
 
-    /// Goes on to the time `until` (s), and shows every state that stands; of the pair of steps
-    /// behind a corner the second. At a jump there are two: before it and after it.
+    /// Advances to the time `until` (s), and calls back with every accepted state; for the pair of steps behind a
+    /// corner with the second. At a jump there are two: before it and after it.
     ///
     /// # Errors
-    /// [`RubberError::NoEquilibrium`] where no step however small ends in equilibrium. The state is then that
-    /// of the last step that did. An end that is not finite.
+    ///
+    /// [`RubberError::NoEquilibrium`] if no step however small ends in equilibrium; the state is then that of the last
+    /// step that did. An end that is not finite.
     pub fn advance(
         &mut self,
         until: f64,
@@ -201,10 +202,11 @@ impl<'a> RubberSolid<'a> {
         })
     }
 
-    /// As [`RubberSolid::advance`], as long as what is shown the states says to go on.
+    /// As [`RubberSolid::advance`]; stops when the function that is called with each state returns `false`.
     ///
     /// # Errors
-    /// As there; [`RubberError::Stopped`].
+    ///
+    /// The same; [`RubberError::Stopped`].
     pub fn advance_while(
         &mut self,
         until: f64,
@@ -228,8 +230,8 @@ impl<'a> RubberSolid<'a> {
         Ok(())
     }
 
-    /// Where a load or a prescribed displacement jumps, the body follows with its instantaneous
-    /// stiffness, in no time: at once, or in parts where the search for the whole fails.
+    /// At a jump of a load or a prescribed displacement the body follows with its instantaneous stiffness, in no time:
+    /// at once, or in parts if the search for the whole fails.
     fn sudden_change(
         &mut self,
         watch: &mut impl FnMut(&RubberSolid) -> bool,
@@ -265,8 +267,8 @@ impl<'a> RubberSolid<'a> {
         self.shown(watch)
     }
 
-    /// Equilibrium when a part of a jump is done, from the one before. Nothing relaxes meanwhile, so that the
-    /// way does not matter.
+    /// Equilibrium at a fraction of a jump, from the one before. Nothing relaxes meanwhile, so that the path is
+    /// irrelevant.
     fn sudden_part(&mut self, at: Moment, from: &[Vec3]) -> Result<(), Stop> {
         self.carry(0.0)?;
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
@@ -275,7 +277,7 @@ impl<'a> RubberSolid<'a> {
         self.search.converge(at, &law, &self.options.convergence)
     }
 
-    /// Goes on to a time before which nothing changes its slope.
+    /// Advances to a time before which no slope changes.
     fn advance_smoothly(
         &mut self,
         end: f64,
@@ -283,18 +285,18 @@ impl<'a> RubberSolid<'a> {
     ) -> Result<(), RubberError> {
         let smallest = self.options.smallest * (end - self.state.time);
         let mut longest = f64::INFINITY;
-        // What stopped a step, and where that step was to end.
+        // Failure of a step, and the end of that step.
         let mut stopped: Option<(f64, StepFailure)> = None;
         while self.state.time < end {
             let rest = end - self.state.time;
             let wanted = match self.options.stepping {
                 Stepping::Fixed(step) if self.next == 0.0 => step,
-                // A fiftieth: should it be too long, it will be halved.
+                // A fiftieth; halved if it is too long.
                 Stepping::Accuracy(_) if self.next == 0.0 => rest / 50.0,
                 _ => self.next,
             };
             let wanted = wanted.min(longest);
-            // Two even steps rather than a long one and a sliver.
+            // Two equal steps instead of a long and a very short one.
             let step = if wanted > rest * (1.0 - 1e-9) {
                 rest
             } else if 2.0 * wanted > rest && self.judges() {
@@ -319,11 +321,11 @@ impl<'a> RubberSolid<'a> {
                     self.search.tangent.forget();
                     self.next = 0.5 * step;
                     if let (StepFailure::Far { strain }, Some(way)) = (&failure, self.options.way) {
-                        // Strains grow about as the way does.
+                        // Strains grow about in proportion to the step.
                         longest = step * (0.9 * way.strain / strain).max(0.25);
                         self.next = longest;
                     }
-                    // What the material cannot bear says more than iterations that find nothing just short of it.
+                    // The material's limit is more informative than iterations that fail just below it.
                     if !matches!(stopped, Some((_, StepFailure::Material { .. }))) {
                         stopped = Some((to, failure.clone()));
                     }

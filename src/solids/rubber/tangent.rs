@@ -1,4 +1,4 @@
-//! Forces and stiffness of a solid of rubber at the end of a step, and the factors that serve several of them.
+//! Forces and stiffness of a solid of rubber at the end of a step, and factors for several steps.
 
 use crate::ch2_housing::elastomer::ElastomerError;
 use crate::elements::tet10::POINTS;
@@ -13,19 +13,18 @@ use crate::solids::rubber::model::{Patch, RubberModel, centre};
 use crate::solids::rubber::newton::Stop;
 use crate::solids::tangent::PRESCRIBED;
 
-/// What the deviatoric stress at the end of a step is made of: (1 + `gain`) DEV S plus what each
-/// quadrature point carries over, Pa.
+/// Deviatoric stress at the end of a step: (1 + `gain`) DEV S plus the relaxed history of each quadrature point, Pa.
 #[derive(Clone, Copy, Debug)]
 pub struct StepLaw<'a> {
     pub gain: f64,
     /// One for each point, or empty for none.
     pub carried: &'a [Sym3],
-    /// Acceleration that a displacement at the end of the step makes, 1/s²; zero without inertia.
+    /// Acceleration per displacement at the end of the step, 1/s²; zero without inertia.
     pub inertia: f64,
 }
 
 impl StepLaw<'_> {
-    /// The network alone: long after every Maxwell element has relaxed.
+    /// The network alone, with all Maxwell elements relaxed.
     pub const RELAXED: StepLaw<'static> = StepLaw { gain: 0.0, carried: &[], inertia: 0.0 };
 
     fn total(&self, at: usize, own: &Sym3) -> Sym3 {
@@ -37,7 +36,8 @@ impl StepLaw<'_> {
 /// Mean stress at every corner node from the volume around it, Pa, in the order of the patches.
 ///
 /// # Errors
-/// An element turned inside out.
+///
+/// An inverted element.
 pub fn mean_stresses(
     model: &RubberModel,
     displacement: &[Vec3],
@@ -61,11 +61,12 @@ pub fn mean_stresses(
     Ok(())
 }
 
-/// Adds the forces of all elements on the nodes, N, and notes DEV S of the network at every
-/// quadrature point and the [`mean_stresses`], Pa.
+/// Adds the forces of all elements on the nodes, N, and stores DEV S of the network at every quadrature point and the
+/// [`mean_stresses`], Pa.
 ///
 /// # Errors
-/// An element turned inside out, or beyond what its material can bear.
+///
+/// An inverted element, or one beyond the material's limit.
 pub fn add_forces(
     model: &RubberModel,
     law: &StepLaw,
@@ -131,15 +132,15 @@ fn element_stiffness(
     Ok(tet10_nodal::stiffness(tet, &moved, &responses, &at_points(model, index, means)))
 }
 
-/// The tangent's factors, and how many were made.
+/// Factors of the tangent, and their number.
 pub struct Tangent {
     matrix: SymmetricMatrix,
     factor: Option<Factor>,
-    /// What the factors are of, and whether there are sound ones.
+    /// State of the factors, and whether they are valid.
     factored: Factored,
     is_sound: bool,
     pub factorisations: usize,
-    /// Of the patch at work: how its volume follows the nodes, and its unknowns with that, ascending.
+    /// For the present patch: derivative of its volume by the nodes, and its unknowns, ascending.
     slopes: Vec<Vec3>,
     along: Vec<(usize, f64)>,
     means: Vec<f64>,
@@ -159,27 +160,28 @@ impl Tangent {
         }
     }
 
-    /// The stiffness that was last factorised, N/m.
+    /// The last factorised stiffness, N/m.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         &self.matrix
     }
 
-    /// Whether factors of a step are near enough to begin another one with.
+    /// Returns whether the factors of a step may start another one.
     pub fn serves(&self, law: &StepLaw) -> bool {
         let Factored { gain, inertia, .. } = self.factored;
         let near = (law.gain - gain).abs() <= 0.05 * (1.0 + gain);
         self.is_sound && near && (law.inertia - inertia).abs() <= 0.05 * inertia
     }
 
-    /// The state that the factors at hand are of.
+    /// State of the present factors.
     pub fn factored(&self) -> Option<&Factored> {
         self.is_sound.then_some(&self.factored)
     }
 
-    /// Makes the factors of such a state again; with none the next search makes its own.
+    /// Recomputes the factors of a state; without one the next search computes its own.
     ///
     /// # Errors
-    /// As [`Tangent::refresh`]; never in a state that factors were made of before.
+    ///
+    /// Those of [`Tangent::refresh`]; never in a state that was factorised before.
     pub fn restore(&mut self, model: &RubberModel, of: Option<&Factored>) -> Result<(), Stop> {
         self.is_sound = false;
         let Some(Factored { gain, inertia, displacement, carried }) = of else { return Ok(()) };
@@ -187,16 +189,17 @@ impl Tangent {
         self.refresh(model, &law, displacement, None)?.map_err(at_rest).map_err(Stop::All)
     }
 
-    /// Factors made on the way to where no equilibrium was found serve nobody.
+    /// Drops the factors of a failed search.
     pub fn forget(&mut self) {
         self.is_sound = false;
     }
 
-    /// Factors in a state. If `moves` are changes of the prescribed components, `right` loses the
-    /// forces that they make on the unknowns.
+    /// Factors in a state. If `moves` are changes of the prescribed components, their forces on the unknowns are
+    /// subtracted from `right`.
     ///
     /// # Errors
-    /// As [`add_forces`]; a stiffness that is not positive definite.
+    ///
+    /// Those of [`add_forces`]; a stiffness that is not positive definite.
     pub fn refresh(
         &mut self,
         model: &RubberModel,
@@ -246,12 +249,12 @@ impl Tangent {
             Some(factor) => factor.refactor(&self.matrix),
             None => model.unknowns.factor(&self.matrix).map(|factor| self.factor = Some(factor)),
         };
-        // Factors that failed are of nothing.
+        // Failed factors are invalid.
         self.is_sound = outcome.is_ok();
         Ok(outcome)
     }
 
-    /// Adds what the mean stress at one corner node changes: a product of one vector with itself.
+    /// Adds the stiffness of the mean stress at one corner node: the product of a vector with itself.
     fn add_volume(
         &mut self,
         model: &RubberModel,

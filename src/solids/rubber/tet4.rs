@@ -1,9 +1,9 @@
-//! Implicit steps and small vibrations of the four-node elements that explicit steps use.
+//! Implicit steps and small vibrations of the four-node elements of explicit steps.
 //!
-//! To the ten-node element a four-node one is an element whose mid-edge nodes have no shape function and whose
-//! quadrature points all have its one gradient. Volumes around corner nodes are then its volumes around nodes
-//! ([`crate::elements::tet4_nodal`]), and a patch of its own for each element makes it the source's element, which
-//! locks. Everything for ten-node elements holds for it; only its work is that of ten nodes.
+//! A four-node element is treated as a ten-node element whose mid-side nodes have no shape function and whose
+//! quadrature points all have one gradient. Volumes around corner nodes are then its nodal volumes
+//! ([`crate::elements::tet4_nodal`]); one patch for each element gives the source's element, which locks. Everything
+//! for ten-node elements applies; only the cost is that of ten nodes.
 
 use crate::elements::tet4::Tet4;
 use crate::elements::tet10::{POINTS, Point, Tet10};
@@ -17,7 +17,8 @@ impl RubberBody {
     /// The same body and elements for implicit steps: without inertia, mass and gravity.
     ///
     /// # Errors
-    /// As [`RubberBody::model`] and [`RubberModel::new`].
+    ///
+    /// Those of [`RubberBody::model`] and [`RubberModel::new`].
     pub fn implicit(&self) -> Result<RubberModel, RubberError> {
         // Checks elements and supports.
         self.model()?;
@@ -56,7 +57,7 @@ impl RubberBody {
     }
 }
 
-/// As an element of ten nodes, six of which do nothing.
+/// A ten-node element with six inactive nodes.
 fn widened(tet: &Tet4) -> Tet10 {
     let [a, b, c] = tet.gradients;
     let last = [0, 1, 2].map(|i: usize| -(a[i] + b[i] + c[i]));

@@ -1,8 +1,8 @@
-//! Forces of many four-node elements of rubber in explicit steps, a lane an element.
+//! Forces of many four-node elements of rubber in explicit steps, one element a lane.
 //!
-//! The laws are those of one element ([`FiveTerms`], [`tet4_nodal`]), for all lanes of a block at once. Of each block
-//! the stresses it remembers lie together, in the order in which they are read: DEV S of the last step, then Hⱼ of
-//! every Maxwell element. They are most of what a step reads and writes.
+//! The laws are those of one element ([`FiveTerms`], [`tet4_nodal`]), for all lanes of a block at once. History
+//! stresses of a block are stored together in the order of reading: DEV S of the last step, then Hⱼ of every Maxwell
+//! element. They are most of the memory traffic of a step.
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::ch2_housing::elastomer::five_terms::FiveTerms;
@@ -18,28 +18,28 @@ use crate::solids::model::{SolidError, SolidModel, centre};
 use crate::solids::tet4_blocks::{Block, LANES, Lanes, Node, blocks};
 use std::cell::Cell;
 
-/// Where the mean stress of an element comes from.
+/// Source of an element's mean stress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MeanStress {
-    /// Its own volume, as in the source: locks where rubber hardly changes its volume.
+    /// Its own volume, as in the source: locks for nearly incompressible rubber.
     OfElement,
     /// Volumes averaged around its nodes.
     #[default]
     AroundNodes,
 }
 
-/// What an evaluation does with the stresses of the Maxwell elements.
+/// Treatment of the Maxwell stresses in an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum History {
-    /// Steps them on to the present state and keeps that: once in an accepted step.
+    /// Advances them to the present state and stores them: once in an accepted step.
     Commit,
-    /// Steps them on and forgets it.
+    /// Advances them without storing.
     Look,
-    /// Leaves them out; the deviatoric stress is that of the network times a factor.
+    /// Omits them; the deviatoric stress is that of the network times a factor.
     Scaled(f64),
 }
 
-/// Elements as the force loop reads them, and what they remember.
+/// Elements in the blocks of the force loop, and their history.
 #[derive(Clone, Debug)]
 pub struct RubberForces {
     pub material: Elastomer,
@@ -49,14 +49,14 @@ pub struct RubberForces {
     /// s.
     step: f64,
     factors: StepFactors,
-    /// Where the dashpots' take is counted, which costs a step some of its speed.
+    /// Counts the dissipation of the dashpots, at some cost in speed.
     dashpots: Option<DashpotFactors>,
-    /// What they have taken since, by the law of small strain, and what the elements' stresses did beyond it, J.
+    /// Dissipation since then, by the law of small strain, and work of the elements' stresses beyond it, J.
     pub dissipated: f64,
     pub beyond: f64,
-    /// Of each block DEV S, then Hⱼ, Pa.
+    /// DEV S, then Hⱼ, of each block, Pa.
     memory: Vec<[Lanes; 6]>,
-    /// Of each block the strain then; empty where nothing is counted.
+    /// Strain of each block at that time; empty if dissipation is not counted.
     strains: Vec<[Lanes; 6]>,
     /// Undeformed volume around each node, a quarter of each element there, m³.
     volumes: Vec<f64>,
@@ -67,7 +67,7 @@ pub struct RubberForces {
 }
 
 impl RubberForces {
-    /// At rest, relaxed; elements must be sound.
+    /// At rest, relaxed; elements must be valid.
     pub fn new(
         material: Elastomer,
         mean_stress: MeanStress,
@@ -101,7 +101,7 @@ impl RubberForces {
         }
     }
 
-    /// From now on in steps of `dt` s.
+    /// Sets the step to `dt` s.
     pub fn set_step(&mut self, dt: f64) {
         if dt != self.step {
             self.step = dt;
@@ -112,7 +112,7 @@ impl RubberForces {
         }
     }
 
-    /// From where it rests next on counts what the dashpots take.
+    /// Counts the dissipation of the dashpots from the next rest on.
     pub fn count_dissipation(&mut self) {
         let mut dashpots = DashpotFactors::default();
         dashpots.set(&self.material.maxwell, self.step);
@@ -120,9 +120,9 @@ impl RubberForces {
         self.strains = vec![[Lanes::of(0.0); 6]; self.blocks.len()];
     }
 
-    /// Energy in the springs of the Maxwell elements, what the dashpots have taken since that is counted, both by the law of
-    /// small strain, and what the elements' stresses did beyond it, J: in a state one step ahead of what is remembered, as
-    /// explicit steps leave it.
+    /// Energy in the springs of the Maxwell elements, dissipation of their dashpots since counting began, both by the
+    /// law of small strain, and work of the elements' stresses beyond it, J: for a state one step ahead of the history,
+    /// as after an explicit step.
     pub fn maxwell_ledger(&self, displacement: &[Node]) -> [f64; 3] {
         let material = &self.material;
         let (terms, shear_modulus) = (material.maxwell.len(), material.network.shear_modulus());
@@ -155,7 +155,7 @@ impl RubberForces {
         [springs, taken, beyond]
     }
 
-    /// About the side of the smallest element, m.
+    /// Approximate side of the smallest element, m.
     pub fn shortest(&self) -> f64 {
         let volumes = self.elements().map(|(_, tet)| tet.volume);
         libm::cbrt(volumes.fold(f64::INFINITY, f64::min))
@@ -167,11 +167,11 @@ impl RubberForces {
         let all = self.blocks.iter().flat_map(move |block| {
             block.nodes.iter().enumerate().map(move |(lane, nodes)| (nodes, lanes(block, lane)))
         });
-        // What fills up the last block has no volume.
+        // Padding has no volume.
         all.filter(|(_, tet)| tet.volume > 0.0)
     }
 
-    /// Energy of the network, J: what the Maxwell elements hold is not in it.
+    /// Energy of the network, J, without that of the Maxwell elements.
     pub fn network_energy(&self, displacement: &[Node]) -> f64 {
         let network = &self.material.network;
         let (mut energy, mut around) = (0.0, vec![0.0; self.volumes.len()]);
@@ -193,7 +193,7 @@ impl RubberForces {
         energy + pairs.map(|(v, of)| of * network.volume_energy(v / of)).sum::<f64>()
     }
 
-    /// What is wrong with a state that is not sound.
+    /// Error of an invalid state.
     pub fn failure(
         &self,
         model: &SolidModel,
@@ -217,7 +217,7 @@ impl RubberForces {
         model.not_finite(displacement.iter().position(bad).unwrap_or(0), time, step)
     }
 
-    /// Takes the present state for one in which the rubber has rested: no stress in the Maxwell elements.
+    /// Takes the present state as relaxed: no stress in the Maxwell elements.
     pub fn relax(&mut self, displacement: &[Node]) {
         let zero = [Lanes::of(0.0); 6];
         self.memory.fill(zero);
@@ -360,13 +360,13 @@ impl RubberForces {
         self.beyond += beyond.to_array().iter().sum::<f64>();
     }
 
-    /// Whether at the last evaluation no element was turned inside out or stretched beyond its material.
+    /// Returns whether at the last evaluation no element was inverted or beyond the material's limit.
     pub fn is_sound(&self) -> bool {
         self.lowest > -1.0
     }
 
-    /// DEV S and Hⱼ of every element, one after the other (Pa), and strains where they are counted with: what a run needs
-    /// to go on.
+    /// DEV S and Hⱼ of every element, one after the other (Pa), and strains if they are counted: the history of a
+    /// checkpoint.
     pub fn memory(&self) -> Vec<f64> {
         self.memory
             .iter()
@@ -376,9 +376,10 @@ impl RubberForces {
             .collect()
     }
 
-    /// Puts back what [`RubberForces::memory`] gave.
+    /// Restores [`RubberForces::memory`].
     ///
     /// # Panics
+    ///
     /// If it has another length.
     pub fn remember(&mut self, values: &[f64]) {
         let count = self.memory.len() + self.strains.len();
@@ -406,7 +407,7 @@ fn scaled(mut stress: Sym3<Lanes>, factor: f64) -> Sym3<Lanes> {
     stress
 }
 
-/// (2.13) and (2.14): Hⱼ stepped on in their places, and the total deviatoric stress.
+/// (2.13) and (2.14): advances Hⱼ in place, and returns the total deviatoric stress.
 #[inline(always)]
 fn remember(memory: &mut [[Lanes; 6]], own: Sym3<Lanes>, factors: &StepFactors) -> Sym3<Lanes> {
     let Some((before, terms)) = memory.split_first_mut() else { return own };
@@ -426,7 +427,7 @@ fn remember(memory: &mut [[Lanes; 6]], own: Sym3<Lanes>, factors: &StepFactors) 
     total
 }
 
-/// As [`remember`], the memory left as it is.
+/// As [`remember`], without changing the memory.
 fn foresee(memory: &[[Lanes; 6]], own: Sym3<Lanes>, factors: &StepFactors) -> Sym3<Lanes> {
     let Some((before, terms)) = memory.split_first() else { return own };
     let mut total = own;

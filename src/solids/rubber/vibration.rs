@@ -8,10 +8,10 @@ use crate::solids::rubber::harmonic::{ComplexStiffness, complex_stiffness};
 use crate::solids::rubber::model::RubberModel;
 use std::f64::consts::TAU;
 
-/// Part of the stiffness by which the last vector may have changed it: far below what a mesh leaves.
+/// Relative change of the stiffness by the last vector, far below the error of a mesh.
 const TOLERANCE: f64 = 1e-6;
 
-/// The answer at one frequency.
+/// Response at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
     /// Hz; zero is the relaxed network.
@@ -20,10 +20,11 @@ pub struct Answer {
     pub hysteresis: Hysteresis,
 }
 
-/// Answers to the motion that the prescribed components make, at each of `frequencies` (Hz).
+/// Response to the motion of the prescribed components, at each of `frequencies` (Hz).
 ///
 /// # Errors
-/// As [`complex_stiffness`].
+///
+/// Those of [`complex_stiffness`].
 pub fn vibrations(
     model: &RubberModel,
     frequencies: &[f64],
