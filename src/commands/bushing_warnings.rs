@@ -46,7 +46,6 @@ fn share_of_wall(spring: &Spring, connection: &Connection, bodies: [[f64; 5]; 2]
     stretch.max(across).max(lever * rotation) / of.body.thickness
 }
 
-/// Warnings about bushings in an equilibrium.
 pub fn of_equilibrium(
     scene: &AssemblyScene,
     assembly: &StaticAssembly,
@@ -59,7 +58,6 @@ pub fn of_equilibrium(
     scene.springs.iter().zip(&assembly.connections).filter_map(warning).collect()
 }
 
-/// Warnings about bushings, from the rows of a run.
 pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
     let Some(assembly) = session.motion.assembly() else { return Vec::new() };
     let warning = |spring: &Spring| {

@@ -9,7 +9,6 @@ use bearing_dynamics::output::state::arrays::remove_arrays;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Kind of results that a command writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Writes {
     Statics,

@@ -13,13 +13,11 @@ use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
 
-/// Title and source of a scene.
 pub fn head(title: &Option<String>, source: &Option<String>) -> Map<String, Value> {
     let given = [("title", title), ("source", source)].into_iter();
     given.filter_map(|(name, text)| Some((name.into(), json!(text.as_ref()?)))).collect()
 }
 
-/// The resolved scene, every dimensional value with its unit.
 pub fn scene(scene: &Scene) -> Echo {
     let mut echo = head(&scene.title, &scene.source);
     echo.insert("bearing".into(), bearing(scene)?);
@@ -178,7 +176,6 @@ pub fn sections(
     Ok(vec![("hertz".into(), hertz(contacts)?), ("frequencies".into(), frequencies(scene)?)])
 }
 
-/// Hertz contacts of the inner and the outer race.
 pub fn hertz([inner, outer]: [&HertzContact; 2]) -> Echo {
     let contact = |contact: &HertzContact| -> Echo {
         Ok(json!({

@@ -35,7 +35,6 @@ pub fn defaults(scene: &Scene) -> Vec<DefaultUsed> {
     all
 }
 
-/// Assumptions and defaults in use, for `check`.
 pub fn notes(assumptions: &[Assumption], defaults: &[DefaultUsed]) -> [(&'static str, Value); 2] {
     let assumption = |a: &Assumption| json!({ "name": a.name, "text": a.text });
     let default =
@@ -95,7 +94,6 @@ pub fn output(scene: &Scene) -> Echo {
     }))
 }
 
-/// Bodies, their loads and prescribed motions, and the contact laws.
 pub fn motion(problem: &DynamicProblem) -> Echo {
     let mut echo = Map::new();
     echo.insert("ball".into(), json!({ "inertia": inertia(&problem.ball)? }));
@@ -119,7 +117,6 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     Ok(Value::Object(echo))
 }
 
-/// A rigid body other than a race or a cage.
 pub fn body(body: &SceneBody) -> Echo {
     let mut echo = race(&body.race)?;
     if let Value::Object(map) = &mut echo {

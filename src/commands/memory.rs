@@ -73,7 +73,6 @@ pub fn refuse_beyond(memory: &Memory, other: &'static str) -> Result<(), TooLarg
     memory.refuse_beyond(resident, limit, from, other)
 }
 
-/// Text of the memory that a solution needs.
 pub fn text(memory: &Memory) -> String {
     let resident = resident_memory();
     let (limit, _) = limit(resident);

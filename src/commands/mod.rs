@@ -165,7 +165,7 @@ pub fn placed(
     }
 }
 
-/// Part of every summary that describes the scene: its keys, plan, assumptions and defaults.
+/// Scene, plan, assumptions and defaults for a summary.
 pub fn record(
     scene: Value,
     plan: Vec<Item>,

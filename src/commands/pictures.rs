@@ -21,7 +21,7 @@ const LARGEST_TILT_DEGREES: f64 = 0.3;
 /// File names of the plots, in the order of [`Plot`].
 pub const NAMES: [&str; 3] = ["load_zone.svg", "polar.svg", "moment_tilt.svg"];
 
-/// Writes the plots that the scene asks for and returns their paths.
+/// Writes the requested plots; returns their paths.
 pub fn write(
     folder: &Path,
     scene: &Scene,

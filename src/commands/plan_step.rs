@@ -10,7 +10,6 @@ use bearing_dynamics::motion::step_watch::TOLERATED;
 use bearing_dynamics::numeric::clock::{given_steps, to_digits, whole_steps};
 use std::error::Error;
 
-/// Note on the time step at the start of a run.
 pub fn step_line(assembly: &Assembly, request: &RunRequest) -> String {
     let options = &request.options;
     match options.stepping {

@@ -84,7 +84,6 @@ pub fn render_assembly(
     text + &lines(warnings)
 }
 
-/// Sections of flexible bodies, one line each.
 fn sections(text: &mut String, assembly: &StaticAssembly, solution: &AssemblySolution) {
     let bodies = assembly.bodies.iter().zip(&solution.coordinates);
     let all: Vec<_> = bodies.filter(|(body, _)| matches!(body.place, Place::Section(_))).collect();

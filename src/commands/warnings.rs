@@ -106,7 +106,6 @@ fn refuse_bent(
     Ok(())
 }
 
-/// Largest loads and contact ellipses in an equilibrium.
 fn at_rest(scene: &Scene, balls: &[BallState]) -> ContactExtremes {
     let geometry = &scene.geometry;
     let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
@@ -134,7 +133,6 @@ fn at_rest(scene: &Scene, balls: &[BallState]) -> ContactExtremes {
     seen
 }
 
-/// Warnings about a run of bearings, from all its steps and rows.
 pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
     let mut warnings = of_bushings(scene);
     if let Some(simulation) = session.motion.bearing() {
@@ -150,7 +148,6 @@ pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
     warnings
 }
 
-/// Prefixes warnings with the name of their bearing.
 fn named<'w>(
     placed: &'w PlacedBearing,
     warnings: impl Iterator<Item = Warning> + 'w,
@@ -159,7 +156,6 @@ fn named<'w>(
     warnings.map(move |warning| warning.named(&name))
 }
 
-/// Largest loads and contact ellipses of all steps.
 fn in_motion(problem: &Bearing, extremes: &Extremes) -> ContactExtremes {
     let races = extremes.races.iter().filter(|race| race.reversed.value > BOTTOM);
     let mut reversed: Vec<usize> = races.map(|race| race.reversed.ball + 1).collect();
@@ -187,7 +183,6 @@ fn update_largest(largest: &mut Extreme, value: f64, ball: usize) -> bool {
     larger
 }
 
-/// Warnings that equilibria and runs share.
 fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &ContactExtremes) -> Vec<Warning> {
     let all = [
         on_open_side(scene, seen),
@@ -282,7 +277,6 @@ fn past_shoulder(scene: &Scene, seen: &ContactExtremes) -> Option<Warning> {
     Some(Warning::new(WarningCode::ContactPastShoulder, text))
 }
 
-/// Centrifugal force of the balls that an equilibrium leaves out.
 fn centrifugal_left_out(scene: &Scene, balls: &[BallState]) -> Option<Warning> {
     let speed = orbital_speed(scene);
     if scene.centrifugal || speed == 0.0 {
@@ -364,7 +358,6 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<Warning> {
     faster_than_fitted(scene).into_iter().chain(locking).collect()
 }
 
-/// Excitation above the frequencies to which the springs of a bushing are fitted.
 fn faster_than_fitted(scene: &AssemblyScene) -> Option<Warning> {
     let fitted = scene.springs.iter().filter_map(|spring| Some((spring, spring.bushing.as_ref()?)));
     let fitted = fitted.filter(|(_, bushing)| bushing.elements.is_none());

@@ -40,7 +40,6 @@ pub fn run(
     housings::refuse(document, &scene, &housings)?;
     let mut made = None;
     if let Some(settings) = scene.run().cloned() {
-        // A run also needs valid bodies.
         let assembly = scene.assembly()?;
         let mut request = request(scene.common(), &settings);
         if housings.is_empty() {
@@ -93,22 +92,21 @@ fn of_scene(
         }
         bearing_lines(&placed.scene, line);
         for housing in housings.iter().filter(|housing| housing.bearing == index) {
-            housing.lines().into_iter().for_each(|(label, said)| line(&label, said));
+            housing.lines().into_iter().for_each(|(label, text)| line(&label, text));
         }
     }
     if scene.one().is_none() {
-        mounting.into_iter().for_each(|(label, said)| line(&label, said));
+        mounting.into_iter().for_each(|(label, text)| line(&label, text));
     }
-    sensors(scene).into_iter().for_each(|(label, said)| line(&label, said));
+    sensors(scene).into_iter().for_each(|(label, text)| line(&label, text));
     for (label, value) in of_run(scene, housings) {
         line(label, value);
     }
 }
 
-/// Sensors, one line each.
 fn sensors(scene: &AssemblyScene) -> Vec<(String, String)> {
     let of = |sensor: &SceneSensor| {
-        let said = match &sensor.kind {
+        let text = match &sensor.kind {
             SceneSensorKind::Accelerometer { at, along, radius, angle, direction } => format!(
                 "accelerometer on {}, {:.4} mm along its axis, {:.4} mm from it at {:.2} deg, {}",
                 scene.name_of_place(*at),
@@ -124,12 +122,11 @@ fn sensors(scene: &AssemblyScene) -> Vec<(String, String)> {
                 1e-6 * circuit.natural_frequency()
             ),
         };
-        (format!("sensor {}", sensor.name), said)
+        (format!("sensor {}", sensor.name), text)
     };
     scene.sensors.iter().map(of).collect()
 }
 
-/// Kind and geometry of a bearing, one line each.
 fn bearing_lines(scene: &Scene, line: &mut Line) {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
     let kind = match geometry.kind {
@@ -185,20 +182,19 @@ fn bearing_lines(scene: &Scene, line: &mut Line) {
     }
 }
 
-/// Length, steps and files of a run, one line each.
 fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, String)> {
     let Some(run) = scene.run() else { return Vec::new() };
     let (end, interval) = (run.end, run.output_interval);
     let rows = format!("to t = {end} s, a row every {interval} s");
-    let mut said = Vec::new();
+    let mut lines = Vec::new();
     match (scene.housing_method(), housings.first().map(|of| &of.scene.housing)) {
         (Some(HousingMethod::QuasiStatic), _) => {
-            said.push(("run", format!("to t = {end} s, an equilibrium every {interval} s")));
-            said.push(("motion", "quasi-static: inertia is left out".into()));
+            lines.push(("run", format!("to t = {end} s, an equilibrium every {interval} s")));
+            lines.push(("motion", "quasi-static: inertia is left out".into()));
         }
         (Some(HousingMethod::Reduced), _) => {
-            said.push(("run", rows));
-            said.push(("steps", format!("{}, of bearing and housing together", stepping(run))));
+            lines.push(("run", rows));
+            lines.push(("steps", format!("{}, of bearing and housing together", stepping(run))));
         }
         (Some(HousingMethod::Explicit), Some(housing)) => {
             let steps = format!(
@@ -208,14 +204,14 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
                 housing.step_fraction,
                 stepping(run)
             );
-            said.extend([("run", rows), ("steps", steps)]);
+            lines.extend([("run", rows), ("steps", steps)]);
         }
-        _ => said.push(("run", format!("to t = {end} s by {}", stepping(run)))),
+        _ => lines.push(("run", format!("to t = {end} s by {}", stepping(run)))),
     }
     if scene.housing_method() != Some(HousingMethod::QuasiStatic)
         && let Some(one) = scene.one()
     {
-        said.extend(bodies(&one.scene));
+        lines.extend(bodies(&one.scene));
     }
     if !housings.is_empty() || scene.has_shafts_in_elements() {
         let mut solids = of_housings(housings);
@@ -226,12 +222,11 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
             solids = vec![0.0; solids.len() + shafts];
         }
         let fields = fields_size(end, interval, run.fields_interval, &solids);
-        said.push(("fields", fields.to_string()));
+        lines.push(("fields", fields.to_string()));
     }
-    said
+    lines
 }
 
-/// Integrator of the bearing and its steps.
 fn stepping(run: &RunSettings) -> String {
     let steps = match run.options.stepping {
         Stepping::Fixed(step) => format!("a step of {step:e} s"),

@@ -21,7 +21,6 @@ use bearing_dynamics::solids::bore_equilibrium::Axial;
 use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
 use serde_json::{Map, Value, json};
 
-/// The resolved scene, every dimensional value with its unit.
 pub fn echo(lists: &Lists) -> Fallible<Value> {
     let mut echo = match lists.scene.one() {
         Some(one) => of_one(one)?,
@@ -33,7 +32,6 @@ pub fn echo(lists: &Lists) -> Fallible<Value> {
     Ok(echo)
 }
 
-/// Named bearings, bodies and springs.
 fn of_several(lists: &Lists) -> Fallible<Value> {
     let scene = lists.scene;
     let common = scene.common();
@@ -198,7 +196,6 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
     Ok(echo)
 }
 
-/// Sensors of a run.
 fn sensors(scene: &AssemblyScene) -> Result<Value, ResultsError> {
     let mut all = Map::new();
     for SceneSensor { name, kind } in &scene.sensors {
@@ -269,7 +266,6 @@ pub fn numerics(
     Ok(echo)
 }
 
-/// Bodies, loads and contact laws of a run.
 pub fn motion(scene: &AssemblyScene) -> Fallible<Value> {
     if let Some(alone) = scene.only() {
         return Ok(echo_run::motion(&dynamic_problem(alone)?)?);
@@ -287,7 +283,6 @@ pub fn motion(scene: &AssemblyScene) -> Fallible<Value> {
     Ok(Value::Object(bearings))
 }
 
-/// Settings of `[housing]`.
 fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
     let mut echo = Map::new();
     echo.insert("method".into(), json!(method(housing.method)));

@@ -37,9 +37,7 @@ const TESTED_DISTANCE: f64 = 2e-3;
 /// Alternative without matrix factors.
 const INSTEAD: &str = ", explicit steps (method = \"explicit\" in [housing])";
 
-/// A flexible housing and its bearing.
 pub struct Housing {
-    /// Index of the bearing.
     pub bearing: usize,
     /// Name of the bearing; `None` for a single one.
     pub name: Option<String>,
@@ -50,7 +48,6 @@ pub struct Housing {
     pub mesh_seconds: f64,
 }
 
-/// Name of a solution method in a scene.
 pub fn method(method: HousingMethod) -> &'static str {
     match method {
         HousingMethod::QuasiStatic => "quasi-static",
@@ -176,7 +173,6 @@ impl Housing {
         self.name.as_ref().map_or("bore.csv".into(), |name| format!("bore_{name}.csv"))
     }
 
-    /// Numbers of nodes and elements.
     pub fn mesh_text(&self) -> String {
         let mesh = &self.built.mesh;
         let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
@@ -218,7 +214,6 @@ impl Housing {
         notes.map(|note| format!("{}{note}", self.before())).collect()
     }
 
-    /// Mesh, mass and fit, one line each.
     pub fn lines(&self) -> Vec<(String, String)> {
         let Housing { scene: HousedScene { housing, .. }, setup, .. } = self;
         let text = format!("{}{}; {}", self.mesh_text(), self.place_text(), method(housing.method));
@@ -263,7 +258,7 @@ impl Housing {
         };
         line("contact stiffness", stiffness);
         let axial = match housing.axial {
-            Axial::Held => "fixed, not by the bore",
+            Axial::Held => "fixed by a shoulder",
             Axial::Free => "free",
         };
         line("outer race, axially", axial.into());

@@ -29,7 +29,6 @@ use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
 use bearing_dynamics::solids::condensation::{CondensedBore, beyond_normals};
 use nalgebra::SVector;
 
-/// Reads or generates the meshes.
 pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housing>> {
     let mut housings = Vec::new();
     for (bearing, placed) in scene.bearings.iter().enumerate() {
@@ -107,7 +106,6 @@ pub fn refuse_steps(document: &Document) -> Fallible<()> {
     Err(format!("{place}: {key}: refused: {reason}. Hint: {hint}").into())
 }
 
-/// Each housing condensed onto its bore.
 pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {
     housings.iter().map(Housing::condensed).collect()
 }
@@ -135,7 +133,6 @@ pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiS
     housings.iter().zip(bores).map(seat).collect()
 }
 
-/// Equilibrium at t = 0 and its problem.
 pub struct Equilibrium<'b> {
     pub still: StaticAssembly<'b>,
     pub moment: EquilibriumAt,

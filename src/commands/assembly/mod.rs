@@ -1,4 +1,4 @@
-//! Commands on a scene of bearings, alone or with bodies and housings, and the functions that they share.
+//! Commands on a scene of bearings, and the functions that they share.
 
 pub mod check;
 pub mod echo;
@@ -71,7 +71,7 @@ pub fn still(lists: &Lists) -> Fallible<StaticAssembly<'static>> {
     })
 }
 
-/// Part of the summary of a run or an equilibrium that describes the scene: its keys, plan, assumptions and defaults.
+/// Scene, plan, assumptions and defaults for the summary.
 pub fn record(lists: &Lists, plan: Vec<Item>, seconds: Vec<(String, f64)>) -> Fallible<RunRecord> {
     let (assumptions, defaults) = (&lists.scene.common().assumptions, defaults(lists.scene));
     Ok(super::record(echo::echo(lists)?, plan, assumptions, &defaults, seconds))

@@ -124,12 +124,11 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-/// Natural modes of a housing if the scene gives no limit of frequency: enough for the lowest ones of a pillow block, and
-/// cheaper than condensing its bore.
+/// Natural modes of a housing without a limit in the scene: enough for a pillow block, and cheaper than condensing its bore.
 const NATURAL: usize = 12;
 
-/// Natural modes kept for a housing (the lowest `usual` ones if the scene gives no limit of frequency), and the frequency of the
-/// first one left out, Hz.
+/// Natural modes kept for a housing (the lowest `usual` ones without a limit in the scene), and the frequency of the first one left
+/// out, Hz.
 pub(super) fn natural_modes(
     housing: &Housing,
     bore: &CondensedBore,
@@ -207,7 +206,6 @@ fn beyond_natural(first_left_out: f64, above: impl Fn(f64) -> usize) -> Option<W
     })
 }
 
-/// Bodies with free coordinates.
 fn moving_bodies(assembly: &Assembly, still: &StaticAssembly) -> Vec<MovingBody> {
     let of = |(index, (still, body)): (usize, (&StaticBody, &Body))| {
         let Place::Loaded(loaded) = &still.place else { return None };

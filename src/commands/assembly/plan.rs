@@ -137,7 +137,6 @@ pub fn of_housings(housings: &[Housing]) -> Vec<f64> {
     housings.iter().map(|housing| file_bytes(&housing.built.mesh, true)).collect()
 }
 
-/// Number and size of the fields files, if there are some during the run.
 fn fields_line(run: &RunSettings, solids: &[f64]) -> Option<String> {
     let size = fields_size(run.end, run.output_interval, run.fields_interval, solids);
     size.interval.filter(|_| !solids.is_empty()).map(|_| note("fields", &size.to_string()))
@@ -166,10 +165,8 @@ fn imbalance_text(scene: &AssemblyScene, shaft: &ShaftElements) -> Option<String
     })
 }
 
-/// Bushings and shafts in elements.
 pub type Elements<'e> = (&'e [BushingElements], &'e [ShaftElements]);
 
-/// Items of a run in time steps.
 pub fn stages(
     scene: &AssemblyScene,
     (housings, (bushings, shafts)): (&[Housing], Elements),
@@ -229,7 +226,6 @@ pub fn stages(
     items
 }
 
-/// Items of the equilibrium at t = 0.
 pub fn of_statics(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<Item>> {
     Ok(of_equilibrium(&still(lists)?, housings, ASKED_FOR))
 }
@@ -245,7 +241,6 @@ fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &st
     statics::items(still, solids, centrifugal)
 }
 
-/// Items of a quasi-static sequence.
 pub fn of_course(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fallible<Vec<Item>> {
     const CAGE_ROTATES: &str =
         "in `run`, because the cage rotates; `statics` leaves it out, it is not requested";
@@ -273,7 +268,6 @@ pub fn of_one(one: &PlacedBearing, still: &StaticAssembly) -> Fallible<StaticPro
     })
 }
 
-/// Size of the table that a run writes.
 fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
     let text = match table_size(assembly.clone(), request) {
         Ok(size) => size.to_string(),
@@ -308,7 +302,6 @@ fn condensed_text(sizes: &Sizes) -> String {
     )
 }
 
-/// Coupling steps of the explicit method.
 fn explicit_note(lists: &Lists, housings: &[Housing], run: &RunSettings) -> String {
     let chosen = lists.scene.housing_method() == Some(HousingMethod::Explicit);
     // The start does not matter here, and finding an equilibrium takes long.

@@ -25,7 +25,6 @@ use bearing_dynamics::solids::reduction::{CutOff, LEFT_OUT, ReduceOptions, Reduc
 use std::error::Error;
 use std::time::Instant;
 
-/// Reduced housings and the assembly with them.
 pub struct Shapes {
     pub assembly: Assembly,
     /// Loads that the static correction modes of each housing cover, and force (N) and moment (N m) on its race at the start.
@@ -52,11 +51,11 @@ fn reduction(
     housing: &Housing,
     bore: &CondensedBore,
     (bearing, impact): (&Bearing, f64),
-    hardest: &LargestLoads,
+    covered: &LargestLoads,
 ) -> Fallible<Reduction> {
     let settings = &housing.scene.housing;
     let fit = housing.setup.fit(&housing.scene);
-    let loads = pressed(bore, settings.penalty, &fit, hardest)?;
+    let loads = pressed(bore, settings.penalty, &fit, covered)?;
     let by_default = || BEYOND_BALLS * ball_frequency(bearing, impact);
     let modes_to = settings.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
@@ -78,7 +77,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let largest = Largest::of(&assembly, housings);
     // A bearing may be loaded by prescribed displacements alone.
     let [impact, force] = [largest.on_bodies, largest.in_all].map(|force| force.max(1.0));
-    let hardest = LargestLoads { force, moment: largest.moments, start: None };
+    let covered = LargestLoads { force, moment: largest.moments, start: None };
     let start = Instant::now();
     let mut bores: Vec<CondensedBore> = condensed(housings)?;
     let condensing = start.elapsed().as_secs_f64();
@@ -95,12 +94,12 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     for (index, (housing, bore)) in housings.iter().zip(&bores).enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
         let start: Option<&BoreState> = at_rest.as_ref().map(|at_rest| &at_rest.seats[index]);
-        let force = housing.scene.housing.press.unwrap_or(hardest.force);
-        let hardest = LargestLoads { force, ..hardest };
+        let force = housing.scene.housing.press.unwrap_or(covered.force);
+        let covered = LargestLoads { force, ..covered };
         let reduction =
-            reduction(housing, bore, (bearing, impact), &LargestLoads { start, ..hardest })?;
+            reduction(housing, bore, (bearing, impact), &LargestLoads { start, ..covered })?;
         let [y, z, about_y, about_z] = start.map_or([0.0; 4], |start| start.load);
-        presses.push((hardest, [y.hypot(z), about_y.hypot(about_z)]));
+        presses.push((covered, [y.hypot(z), about_y.hypot(about_z)]));
         let body = bearing.mounts[1].body;
         let radius = housing.setup.radius(&housing.scene);
         let penalty = housing.scene.housing.penalty;
@@ -148,14 +147,13 @@ impl Shapes {
         Some([amplitudes, rates].map(|of| self.reductions[index].displacement(of)))
     }
 
-    /// Loads that the static correction modes of a housing cover.
     fn made_for(&self, index: usize) -> String {
-        let (hardest, [force, _]) = self.presses[index];
-        let mut text = format!("loads of {} N", to_digits(hardest.force, 4));
-        if hardest.moment > 0.0 {
-            text += &format!(" or {} N m", to_digits(hardest.moment, 4));
+        let (covered, [force, _]) = self.presses[index];
+        let mut text = format!("loads of {} N", to_digits(covered.force, 4));
+        if covered.moment > 0.0 {
+            text += &format!(" or {} N m", to_digits(covered.moment, 4));
         }
-        if force > hardest.force {
+        if force > covered.force {
             text += &format!(" and {} N at the start", to_digits(force, 4));
         }
         text
@@ -163,11 +161,11 @@ impl Shapes {
 
     /// Warning about a force (N) or moment (N m) on a race beyond the loads that the modes of its housing cover.
     pub fn beyond(&self, housings: &[Housing], index: usize, found: [f64; 2]) -> Option<Warning> {
-        let (hardest, start) = self.presses[index];
+        let (covered, start) = self.presses[index];
         let housing = &housings[index];
-        let force = hardest.force.max(start[0]);
+        let force = covered.force.max(start[0]);
         // The covered loads act with levers of up to a width.
-        let moment = (housing.setup.width * hardest.force).max(hardest.moment).max(start[1]);
+        let moment = (housing.setup.width * covered.force).max(covered.moment).max(start[1]);
         if found[0] <= BEYOND * force && found[1] <= BEYOND * moment {
             return None;
         }
@@ -181,7 +179,6 @@ impl Shapes {
         Some(Warning::new(WarningCode::BeyondKeptModes, text).named(&housing.before()))
     }
 
-    /// Modes and frequencies of each housing, one line each.
     pub fn text(&self, housings: &[Housing]) -> String {
         let of = |(housing, reduction): (&Housing, &Reduction)| {
             format!("{}{}\n", housing.before(), text(&reduction.cut_off))
@@ -189,7 +186,6 @@ impl Shapes {
         housings.iter().zip(&self.reductions).map(of).collect()
     }
 
-    /// Plan notes on each housing.
     pub fn notes(&self, scene: &AssemblyScene, housings: &[Housing]) -> Vec<String> {
         let mut notes = Vec::new();
         for (index, (housing, reduction)) in housings.iter().zip(&self.reductions).enumerate() {
@@ -226,7 +222,6 @@ fn cut_off(scene: &AssemblyScene, made_for: &str, cut: &CutOff) -> String {
         let error = cut.dynamic_error(of.frequency);
         format!("{} of the response to {}", percent(error), of.what)
     };
-    // Smaller parts are rounding errors.
     let left_out = match cut.static_left_out {
         part if part < 1e-9 => "nothing".into(),
         part => percent(part),

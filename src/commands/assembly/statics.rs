@@ -40,7 +40,6 @@ const ONE_BEARING: &str = "note: moment-tilt and polar are drawn only for a sing
 /// An equilibrium and everything its results folder records.
 pub struct Found<'s> {
     scene: &'s AssemblyScene,
-    /// Names of the bearings.
     names: Vec<&'s str>,
     assembly: StaticAssembly<'static>,
     /// Equilibrium; with several bearings in the coordinates of the output.
@@ -125,7 +124,6 @@ pub fn find_equilibrium<'s>(
         moment.solution = readable(lists.assembly()?, &still, &moment.solution);
     }
     let StaticAssembly { bodies, bearings, connections, shafts, .. } = still;
-    // The bores are no longer needed.
     let assembly = StaticAssembly { bodies, bearings, connections, shafts, seats: Vec::new() };
     let names = scene.bearings.iter().map(name_of).collect();
     Ok(Found { scene, names, assembly, moment, of_one, warnings, inertia, settled, record })
@@ -147,7 +145,6 @@ fn by_name(
 }
 
 impl Found<'_> {
-    /// Printed tables, notes and warnings.
     fn text(&self) -> String {
         let of_housings: String = self.settled.iter().map(Settled::text).collect();
         let solution = &self.moment.solution;
@@ -186,7 +183,6 @@ impl Found<'_> {
         text
     }
 
-    /// Plots of the bearings.
     fn draw(&self, folder: &Path) -> Fallible<Vec<PathBuf>> {
         let common = self.scene.common();
         if let Some((problem, solution)) = &self.of_one {
@@ -225,7 +221,6 @@ impl Found<'_> {
     }
 }
 
-/// A housing in equilibrium.
 struct Settled {
     housing: Housing,
     seat: SeatRow,
@@ -281,7 +276,6 @@ impl Settled {
         Ok(())
     }
 
-    /// Printed table of the outer race in its bore.
     fn text(&self) -> String {
         let Settled { housing, seat, place, state, .. } = self;
         let von_mises = self.stress.cell_von_mises.iter().copied().fold(0.0, f64::max);

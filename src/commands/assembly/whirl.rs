@@ -24,7 +24,6 @@ const LINES: usize = 8;
 /// Smallest radial part of a mode's inertia for which it is reported. Unbalance does not excite axial modes.
 const ACROSS: f64 = 0.01;
 
-/// Whirl modes of the spinning bodies.
 pub struct Spinning {
     pub whirling: SmallMotionModel,
     /// Whirl modes at the scene's speed.
@@ -128,7 +127,6 @@ impl Spinning {
         text
     }
 
-    /// Warnings about a rotor without support, and about unstable whirl.
     pub fn warnings(&self) -> Vec<Warning> {
         let loose = self.whirling.model.is_loose().then(|| {
             let text = "the rotor has no radial support by a bearing load or a spring, so that whirl and critical speeds are those of a free rotor: add \
@@ -179,7 +177,6 @@ impl Spinning {
         section
     }
 
-    /// Writes the diagram as a picture and a table.
     pub fn write(&self, folder: &Path, title: &str) -> Fallible<[PathBuf; 2]> {
         let picture = folder.join("campbell.svg");
         let critical = self.critical.iter().flatten().map(|critical| critical.speed);

@@ -11,7 +11,6 @@ use bearing_dynamics::solids::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::path::Path;
 
-/// A scene with its mesh, ready to be solved.
 pub type Prepared = solid::Prepared<RubberSetup>;
 
 /// Reads or generates the mesh. The document locates errors in the scene.

@@ -115,7 +115,6 @@ fn of_supports(session: &Session, table: &RunTable, has_maxwell: bool, lines: &m
     }
 }
 
-/// Contact of the race in the bore of this name.
 fn of_bore(table: &RunTable, name: &Option<String>) -> (String, String) {
     let of = prefix(name);
     let largest = |column: &str| largest(table, &format!("{of}{column}"));

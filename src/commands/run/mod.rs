@@ -60,7 +60,6 @@ fn whole_seconds(text: &str) -> Result<u64, String> {
     }
 }
 
-/// End of the steps.
 enum End {
     Complete,
     Interrupted,
@@ -183,7 +182,6 @@ fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>,
     Ok(None)
 }
 
-/// Context of a run in progress.
 struct Running<'r> {
     prepared: &'r Prepared<'r>,
     folder: &'r Path,

@@ -33,10 +33,8 @@ use std::time::Instant;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
-/// A scene ready to run.
 pub(super) enum Prepared<'s> {
     Bearings {
-        /// Lists of the scene.
         lists: Box<Lists<'s>>,
         settings: RunSettings,
         /// With the reduced housings, without the springs of bushings and shafts in elements.
@@ -62,7 +60,6 @@ pub(super) enum Prepared<'s> {
     },
 }
 
-/// Solution method of bearings and their housings.
 pub(super) enum SolutionMethod {
     /// Steps in time, with rigid housings.
     Rigid,
@@ -73,7 +70,6 @@ pub(super) enum SolutionMethod {
     QuasiStaticSequence(Vec<CondensedBore>, f64),
 }
 
-/// A solid of a scene and its mesh.
 #[derive(Clone, Copy)]
 pub(super) struct SolidOf<'p> {
     /// `None` for a single solid.
@@ -107,7 +103,6 @@ pub(super) fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
 const NO_END: &str = "a run needs `end` in [numerics]";
 
 impl<'s> Prepared<'s> {
-    /// Reads or generates meshes, and condenses or reduces housings.
     pub fn new(document: &Document, subject: &'s Subject) -> Fallible<Prepared<'s>> {
         let scene = match subject {
             Subject::Assembly(scene) => scene,
@@ -155,7 +150,6 @@ impl<'s> Prepared<'s> {
         Ok(Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, method })
     }
 
-    /// The bodies and solids that move.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
             Prepared::Bearings {
@@ -230,7 +224,6 @@ impl<'s> Prepared<'s> {
         })
     }
 
-    /// Notes on meshes and bores, printed before the results.
     pub fn notes(&self) -> Vec<String> {
         match self {
             Prepared::Bearings { housings, .. } => {
@@ -308,7 +301,6 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Returns whether spectra are requested.
     pub fn has_spectra(&self) -> bool {
         match self {
             Prepared::Solid { scene, .. } | Prepared::Rubber { scene, .. } => scene.draw_spectrum,
@@ -332,7 +324,6 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Scene, plan, assumptions and defaults for the summary.
     pub fn record(
         &self,
         request: &RunRequest,
@@ -387,7 +378,6 @@ impl<'s> Prepared<'s> {
     }
 }
 
-/// Run request of the bearings of a scene.
 pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     let mut channels = settings.channels.clone();
     let plots = &scene.dynamics.plots;

@@ -283,7 +283,6 @@ fn largest_bore_load(table: &RunTable, name: &Option<String>) -> [f64; 2] {
     })
 }
 
-/// Section on the latest equilibrium of a housing.
 fn equilibrium(
     bore: &CondensedBore,
     housing: &Housing,
@@ -375,7 +374,6 @@ fn spectra(prepared: &Prepared, session: &Session, table: &RunTable) -> Vec<(Str
     }
 }
 
-/// Draws the requested pictures.
 fn pictures(
     folder: &Path,
     prepared: &Prepared,

@@ -207,7 +207,6 @@ fn rows(clock: &Clock, of: &str) -> String {
     format!("a row every {} {of} = {interval:.4e} s{off}", clock.steps_per_row)
 }
 
-/// Unit in which a run counts its progress.
 fn step_name(session: &Session) -> &'static str {
     match session.motion {
         Motion::Bearing(_) | Motion::Solid(_) => "step",
@@ -217,7 +216,6 @@ fn step_name(session: &Session) -> &'static str {
     }
 }
 
-/// Time and number of steps so far.
 pub(super) fn place(session: &Session) -> String {
     let (time, done) = (rounded(session.motion.time()), session.motion.done());
     let counted = match session.motion {
@@ -229,7 +227,6 @@ pub(super) fn place(session: &Session) -> String {
     format!("t = {time} s of {} s, after {done} {counted}", session.clock.end)
 }
 
-/// Progress, printed next to the bar.
 pub(super) fn progress(session: &Session) -> String {
     let (time, end) = (session.motion.time(), session.clock.end);
     let name = step_name(session);

@@ -20,7 +20,6 @@ use bearing_dynamics::solids::support::FreeMotions;
 use serde_json::json;
 use std::error::Error;
 
-/// Properties of a solid of any material.
 struct Facts {
     built: BuiltMesh,
     free: FreeMotions,

@@ -26,7 +26,6 @@ type Echo = Result<Value, ResultsError>;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The resolved scene, every dimensional value with its unit.
 pub fn scene(scene: &SolidScene) -> Echo {
     let mut echo = head(&scene.title, &scene.source);
     let fixed: Result<Vec<Value>, ResultsError> = scene
@@ -155,7 +154,6 @@ pub fn rubber(material: &Elastomer, table: Option<&str>) -> Echo {
     }))
 }
 
-/// Requested small vibrations.
 fn harmonic(asked: &Harmonic) -> Echo {
     let frequencies = asked.frequencies.iter().map(|f| quantity("frequency", *f, "Hz"));
     let frequencies: Vec<Value> = frequencies.collect::<Result<_, _>>()?;
@@ -327,7 +325,6 @@ fn pillow_block(block: &PillowBlock) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// Cells of a body with a bore.
 fn around(around: usize, radial: usize, axial: usize, growth: f64) -> Value {
     json!({ "around": around, "radial": radial, "axial": axial, "growth": growth })
 }

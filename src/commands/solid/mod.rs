@@ -17,7 +17,6 @@ use bearing_dynamics::solids::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::time::Instant;
 
-/// A scene with its mesh, ready to be solved.
 pub struct Prepared<S = SolidSetup> {
     pub built: BuiltMesh,
     pub setup: S,
@@ -60,7 +59,6 @@ pub fn mesh_notes(built: &BuiltMesh) -> Vec<String> {
     done.into_iter().chain(built.notes.iter().cloned()).collect()
 }
 
-/// Prints [`mesh_notes`].
 pub fn say_mesh_notes(built: &BuiltMesh) -> Result<(), Box<dyn Error>> {
     mesh_notes(built).iter().try_for_each(|note| say(&format!("note: {note}\n")))
 }

@@ -39,7 +39,6 @@ pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-/// Number and size of the fields files.
 pub fn fields_line(run: &SolidRun, mesh: &TetMesh) -> String {
     let bytes = file_bytes(mesh, false);
     let size = fields_size(run.end, run.output_interval, Some(run.fields_interval), &[bytes]);
@@ -87,7 +86,6 @@ fn memory_lines(scene: &SolidScene, prepared: &Prepared, model: &SolidModel) -> 
     statics.into_iter().chain([modes]).map(line).collect()
 }
 
-/// Command of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
     Statics,
@@ -95,7 +93,6 @@ pub enum Of {
     Run,
 }
 
-/// Items of one command.
 pub fn items(scene: &SolidScene, prepared: &Prepared, of: Of) -> Vec<Item> {
     let (problem, mesh) = (&prepared.setup.problem, &prepared.built.mesh);
     let kind = match mesh.order() {
