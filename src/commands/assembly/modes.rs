@@ -127,8 +127,8 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
 /// Natural modes of a housing without a limit in the scene: enough for a pillow block, and cheaper than condensing its bore.
 const NATURAL: usize = 12;
 
-/// Natural modes kept for a housing (the lowest `usual` ones without a limit in the scene), and the frequency of the first one left
-/// out, Hz.
+/// Natural modes kept for a housing (the lowest `usual` ones without a limit in the scene), and the frequency of the
+/// first one left out, Hz.
 pub(super) fn natural_modes(
     housing: &Housing,
     bore: &CondensedBore,
@@ -192,7 +192,8 @@ fn beyond_modes(assembly: &Assembly, above: impl Fn(f64) -> usize) -> Option<War
     })
 }
 
-/// Warning about modes near or above the first natural mode (Hz) that a housing leaves out. Below 0.8 of it the error is less than 1 %.
+/// Warning about modes near or above the first natural mode (Hz) that a housing leaves out. Below 0.8 of it the error is
+/// less than 1 %.
 fn beyond_natural(first_left_out: f64, above: impl Fn(f64) -> usize) -> Option<Warning> {
     let limit = 0.8 * first_left_out;
     let beyond = above(limit);
