@@ -1,4 +1,4 @@
-//! What `statics` and `modes` are asked for, whatever the scene is of.
+//! Arguments that `statics` and `modes` share.
 
 use super::earlier::{Writes, claimed};
 use super::results_folder;
@@ -7,7 +7,7 @@ use bearing_dynamics::scene::Document;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// A scene's file, and where its results go.
+/// Scene file and results folder of a command.
 pub struct Asked<'a> {
     pub path: &'a Path,
     pub document: &'a Document,
@@ -16,7 +16,7 @@ pub struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// The folder for results, claimed before anything is computed; `None` where they are only to be said.
+    /// Claims the results folder before anything is computed; `None` with `--dry`.
     ///
     /// # Errors
     /// Those of [`claimed`].

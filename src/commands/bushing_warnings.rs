@@ -1,4 +1,4 @@
-//! The warning "bushing beyond its fit".
+//! Warning about bushings displaced beyond the range of their fit.
 
 use bearing_dynamics::assembly::lists::{Assembly, Mobility};
 use bearing_dynamics::assembly::mount::Mount;
@@ -12,13 +12,13 @@ use bearing_dynamics::output::session::Session;
 use bearing_dynamics::output::warnings::{Warning, WarningCode};
 use bearing_dynamics::scene::build::assembly::{AssemblyScene, Spring};
 
-/// Share of its wall by which a sleeve may move: the springs are fitted to small vibrations, and relaxed rubber is 2 % stiffer at
-/// a tenth of walls of 5 to 30 mm (test `springs_hold_up_to_a_tenth_of_the_wall`).
+/// Displacement of a sleeve, as a share of the wall, up to which its springs are used. They are fitted to small vibrations;
+/// relaxed rubber is 2 % stiffer at a tenth of walls of 5 to 30 mm (test `springs_hold_up_to_a_tenth_of_the_wall`).
 const SHARE_OF_WALL: f64 = 0.1;
 
-/// The warning "bushing beyond its fit": the farthest `share` of its wall by which a sleeve moved, and in a run when, s.
+/// Warning about the largest displacement of a sleeve as a `share` of its wall, and in a run its time, s.
 fn beyond_fit(spring: &Spring, [share, time]: [f64; 2], in_run: bool) -> Option<Warning> {
-    // An equilibrium has springs instead of elements.
+    // An equilibrium uses the springs even of a bushing in elements.
     let of = spring.bushing.as_ref().filter(|of| !in_run || of.elements.is_none())?;
     (share > SHARE_OF_WALL).then(|| {
         let when = if in_run { format!(" at t = {} s", display_time(time)) } else { String::new() };
@@ -36,42 +36,40 @@ fn beyond_fit(spring: &Spring, [share, time]: [f64; 2], in_run: bool) -> Option<
     })
 }
 
-/// Share of its wall by which a sleeve moves across, along or by tilting, its bodies at x, y, z (m) and tilts (rad).
+/// Largest radial, axial or tilting displacement of a sleeve as a share of its wall; bodies at x, y, z (m) and tilts (rad).
 fn share_of_wall(spring: &Spring, connection: &Connection, bodies: [[f64; 5]; 2]) -> f64 {
     let Some(of) = &spring.bushing else { return 0.0 };
     let end = |end: usize| kinematics_at_mount(&fixed(&bodies[end]), &connection.ends[end]);
     let (first, second) = (end(0), end(1));
-    let [stretch, turn, across] = connection.extension([&first, &second]);
+    let [stretch, rotation, across] = connection.extension([&first, &second]);
     let lever = 0.5 * of.body.inner_diameter.hypot(of.body.length);
-    stretch.max(across).max(lever * turn) / of.body.thickness
+    stretch.max(across).max(lever * rotation) / of.body.thickness
 }
 
-/// Warnings about bushings in an equilibrium.
 pub fn of_equilibrium(
     scene: &AssemblyScene,
     assembly: &StaticAssembly,
     solution: &AssemblySolution,
 ) -> Vec<Warning> {
-    let said = |(spring, connection): (&Spring, &Connection)| {
+    let warning = |(spring, connection): (&Spring, &Connection)| {
         let bodies = connection.ends.map(|mount| solution.coordinates[mount.body].into());
         beyond_fit(spring, [share_of_wall(spring, connection, bodies), 0.0], false)
     };
-    scene.springs.iter().zip(&assembly.connections).filter_map(said).collect()
+    scene.springs.iter().zip(&assembly.connections).filter_map(warning).collect()
 }
 
-/// Warnings about bushings by the rows of a run.
 pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
     let Some(assembly) = session.motion.assembly() else { return Vec::new() };
-    let said = |spring: &Spring| {
+    let warning = |spring: &Spring| {
         let named = |of: &&Connection| of.label.as_ref() == Some(&spring.name);
         let connection = assembly.connections.iter().find(named)?;
-        beyond_fit(spring, farthest(assembly, &session.recorder, spring, connection)?, true)
+        beyond_fit(spring, largest_share(assembly, &session.recorder, spring, connection)?, true)
     };
-    scene.springs.iter().filter_map(said).collect()
+    scene.springs.iter().filter_map(warning).collect()
 }
 
-/// Largest share of the wall in any row, and its time, s; `None` where the table lacks the places of the spring's ends.
-fn farthest(
+/// Largest share of the wall in any row, and its time, s; `None` if the table has no positions of the spring's ends.
+fn largest_share(
     assembly: &Assembly,
     recorder: &Recorder,
     spring: &Spring,
@@ -94,7 +92,7 @@ fn farthest(
     Some(most)
 }
 
-/// Columns of x, y, z (m) and both tilts (degrees) of the body of an end; none of one that is fixed, at the origin.
+/// Columns of x, y, z (m) and both tilts (deg) of the body at an end; `Some(None)` if it is fixed at the origin.
 fn columns(assembly: &Assembly, recorder: &Recorder, end: &Mount) -> Option<Option<[usize; 5]>> {
     let body = &assembly.bodies[end.body];
     if matches!(body.mobility, Mobility::Fixed) {

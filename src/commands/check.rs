@@ -16,7 +16,7 @@ pub struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     changes: Changes,
-    /// Print everything that was understood, in SI-based units, as JSON
+    /// Print the resolved scene as JSON, in SI-based units
     #[arg(long)]
     json: bool,
     /// Write the mesh of the solid, or of each housing, with its sets to a new file: Gmsh .msh, Abaqus .inp or ParaView .vtu
@@ -27,7 +27,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> CommandResult {
     let Arguments { scene: path, changes, json, mesh } = arguments;
     let mesh = mesh.as_deref().map(MeshFile::of).transpose()?;
-    // What is read by programs has no notes.
+    // JSON output has no notes.
     let document = if *json { changes.read_quietly(path)?.0 } else { changes.read(path)? };
     match resolve_subject(&document)? {
         Subject::Solid(solid) => solid::check::run(&document, &solid, *json, mesh),
@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-/// Says what was understood as JSON: the scene, what it has written, what it assumes.
+/// Prints the resolved scene, its output, assumptions and defaults as JSON.
 pub fn say_json(
     mut echo: Value,
     output: Value,
@@ -50,10 +50,10 @@ pub fn say_json(
     Ok(Outcome::Done)
 }
 
-/// A label and what is said of it.
+/// Prints a label and its value.
 pub type Line<'a> = dyn FnMut(&str, String) + 'a;
 
-/// Says what was understood, a line each: title, what `lines` has of the scene, what it assumes.
+/// Prints the resolved scene, one line each: title, bases, `lines`, defaults and assumptions.
 pub fn say_lines(
     document: &Document,
     title: &Option<String>,

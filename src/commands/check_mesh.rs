@@ -1,4 +1,4 @@
-//! `bearing check SCENE --mesh FILE`: the meshes of a scene's solid or housings as they were understood, with their sets.
+//! `bearing check SCENE --mesh FILE`: writes the meshes of a scene's solid or housings, with their sets.
 
 use super::{CommandResult, Outcome, say};
 use bearing_dynamics::mesh::tet_mesh::TetMesh;
@@ -8,7 +8,7 @@ use bearing_dynamics::output::fields::mesh_with_sets;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Where meshes go, in m; one of a bearing with a name has it in its own: `block.left.msh`.
+/// File for meshes, in m. A named bearing's mesh has that name in its file name: `block.left.msh`.
 pub struct MeshFile<'a> {
     path: &'a Path,
     ending: &'a str,
@@ -16,13 +16,12 @@ pub struct MeshFile<'a> {
 
 impl MeshFile<'_> {
     /// # Errors
-    /// An ending that tells no format.
+    /// An unknown file extension.
     pub fn of(path: &Path) -> Result<MeshFile<'_>, Box<dyn Error>> {
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         if !["msh", "inp", "vtu"].contains(&ending) {
             return Err(format!(
-                "--mesh {}: the name's ending tells the format, and this one is not known; name a Gmsh file .msh, an Abaqus or CalculiX \
-                 input file .inp, a ParaView file .vtu",
+                "--mesh {}: unknown file extension; name a Gmsh file .msh, an Abaqus or CalculiX input file .inp, or a ParaView file .vtu",
                 path.display()
             )
             .into());
@@ -37,20 +36,20 @@ impl MeshFile<'_> {
         }
     }
 
-    /// Writes each mesh and says so.
+    /// Writes each mesh; returns the lines to print.
     ///
     /// # Errors
-    /// A file that is there already, one that cannot be written, a name of a set that the format has no place for, no mesh at all.
+    /// A file that exists or cannot be written, a set name that the format does not allow, no mesh.
     pub fn write(&self, meshes: &[(Option<&str>, &TetMesh)]) -> Result<String, Box<dyn Error>> {
         if meshes.is_empty() {
             return Err("--mesh: the scene has no solid and no housing in elements".into());
         }
         let paths: Vec<PathBuf> = meshes.iter().map(|(name, _)| self.named(*name)).collect();
-        if let Some(there) = paths.iter().find(|path| path.exists()) {
-            let there = there.display();
-            return Err(format!("--mesh: {there} exists; remove it or name another file").into());
+        if let Some(existing) = paths.iter().find(|path| path.exists()) {
+            let existing = existing.display();
+            return Err(format!("--mesh: {existing} exists; remove it or name another file").into());
         }
-        let mut said = String::new();
+        let mut lines = String::new();
         for ((_, mesh), path) in meshes.iter().zip(paths) {
             let bytes = match self.ending {
                 "msh" => write_gmsh(mesh)?.into_bytes(),
@@ -58,16 +57,16 @@ impl MeshFile<'_> {
                 _ => mesh_with_sets(mesh)?,
             };
             write_atomic(&path, &bytes)?;
-            said += &format!(
-                "wrote {}, in m, where it stands in the scene and with all its sets\n",
+            lines += &format!(
+                "wrote {}, in m, in the coordinates of the scene, with all its sets\n",
                 path.display()
             );
         }
-        Ok(said)
+        Ok(lines)
     }
 }
 
-/// Says what was written, if anything was: the last lines of a check.
+/// Prints the last lines of a check: the meshes written, if any.
 pub fn say_written(written: Option<String>) -> CommandResult {
     written.map_or(Ok(()), |text| say(&text))?;
     Ok(Outcome::Done)

@@ -14,17 +14,17 @@ const TOLERANCES: &str = "tolerances.json";
 pub struct Arguments {
     /// Results folder, case pack, .csv, .npy or summary.json to compare with
     reference: PathBuf,
-    /// The same kind of thing, from the program under test
+    /// The same kind of file or folder, from the program under test
     candidate: PathBuf,
     /// Tolerance class of channels that tolerances.json does not name:
     /// f64-exact, f64-reordered or mixed
     #[arg(long, value_parser = class)]
     class: Option<ToleranceClass>,
-    /// For runs of different accuracy, in place of a class: allow this part of each channel's
-    /// largest value (components of one vector share theirs); how they were stepped is left out
+    /// For runs of different accuracy, instead of a class: relative tolerance, as a part of each
+    /// channel's largest value (components of one vector share theirs); time steps are not compared
     #[arg(long, value_name = "PART", value_parser = part, allow_negative_numbers = true, conflicts_with = "class")]
     rtol: Option<f64>,
-    /// Allow this much besides, in channels of the unit; may be given for several units
+    /// Absolute tolerance of channels with this unit, added to --rtol; repeat for more units
     #[arg(long, value_name = "UNIT=VALUE", value_parser = floor, conflicts_with = "class")]
     atol: Vec<(String, f64)>,
     /// Print the comparison as JSON
@@ -34,7 +34,7 @@ pub struct Arguments {
 
 fn class(name: &str) -> Result<ToleranceClass, String> {
     ToleranceClass::from_name(name)
-        .ok_or_else(|| format!("no such class; there are {}", names().join(", ")))
+        .ok_or_else(|| format!("unknown class; allowed are {}", names().join(", ")))
 }
 
 fn part(text: &str) -> Result<f64, String> {
@@ -55,22 +55,21 @@ fn names() -> Vec<&'static str> {
     ToleranceClass::ALL.iter().map(|class| class.name()).collect()
 }
 
-/// A case pack must be the one that was written. Its tolerances may be edited.
+/// Returns an error for a case pack that was changed after it was written. Its tolerances may be edited.
 fn refuse_corrupt_pack(reference: &Path) -> Result<(), Box<dyn Error>> {
     if !reference.join(MANIFEST).exists() {
         if !reference.join(RESOLVED).exists() {
             return Ok(());
         }
         return Err(format!(
-            "{} has the {RESOLVED} of a case pack and no {MANIFEST}, so that nothing says whether its \
-             numbers are those that were written; get the whole pack, write it anew with `bearing pack`, \
-             or compare with its summary.json and series.csv by name",
+            "{} has the {RESOLVED} of a case pack but no {MANIFEST}, so its numbers cannot be verified; \
+             get the whole pack, write it again with `bearing pack`, or name its summary.json or series.csv",
             reference.display()
         )
         .into());
     }
     match verify_pack(reference) {
-        // The manifest is checked in the order of names, in which this file is the last.
+        // Files are checked in the order of their names, and this one is the last.
         Err(PackError::Hash { name, .. }) if name == TOLERANCES => Ok(()),
         Err(error) => Err(format!("{}: {error}", reference.display()).into()),
         Ok(_) => Ok(()),

@@ -1,4 +1,4 @@
-//! What lies in a results folder before a command writes there: what may be replaced, and its removal.
+//! Earlier contents of a results folder: what a command may replace, and its removal.
 
 use super::{pictures, say};
 use bearing_dynamics::numeric::clock::rounded;
@@ -9,12 +9,11 @@ use bearing_dynamics::output::state::arrays::remove_arrays;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// What a command is about to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Writes {
     Statics,
     Modes,
-    /// Over results of statics or modes too, if that was asked for.
+    /// With `fresh`, also over results of statics or modes.
     Run {
         fresh: bool,
     },
@@ -22,8 +21,8 @@ pub enum Writes {
     Pack,
 }
 
-/// The folder for this process alone, once it is clear that it can be written to and that nothing in
-/// it is lost but results of the same command.
+/// Claims the folder for this process. Checks that it is writable, and that only results of the same
+/// command are lost.
 pub fn claimed(path: &Path, writes: Writes) -> Result<ResultsFolder, Box<dyn Error>> {
     let folder = claim(path)?;
     if !folder.locked {
@@ -36,7 +35,7 @@ pub fn claimed(path: &Path, writes: Writes) -> Result<ResultsFolder, Box<dyn Err
     Ok(folder)
 }
 
-/// Refuses to write over results of another command, or over what is not this program's.
+/// Returns an error if the folder holds results of another command, or files of another program.
 fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
     let found = match (holds(folder)?, writes) {
         (Holds::Nothing, _)
@@ -62,26 +61,26 @@ fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
     Err(format!("{} holds {found}; name another folder with --out", folder.display()).into())
 }
 
-/// Refuses to write over a run of any kind that stands half way.
+/// Returns an error if the folder holds an unfinished run.
 pub fn refuse_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
     let state = json::read(&folder.join("state.json")).unwrap_or_default();
-    // That of a bearing in its housing lay a level deeper in versions before.
+    // Earlier versions wrote the state of a bearing in a housing one level deeper.
     let of = if state["bearing"]["stopped"].is_string() { &state["bearing"] } else { &state };
     if !matches!(of["stopped"].as_str(), Some("running" | "interrupted")) {
         return Ok(());
     }
     let (time, end) = (of["time"].as_f64().unwrap_or(0.0), &of["end"]);
     Err(format!(
-        "{} holds a run that stands at t = {} s of {end} s; go on with it (--resume), discard it \
-         (--fresh), or choose another --out",
+        "{} holds an unfinished run at t = {} s of {end} s; resume it (--resume), discard it (--fresh), or \
+         choose another --out",
         folder.display(),
         rounded(time)
     )
     .into())
 }
 
-/// Removes what an earlier command left in the folder and this one may not write again; nothing that
-/// this program does not name so. The summary goes first: its presence says that a folder is complete. Whether it was.
+/// Removes the result files of an earlier command, and returns whether they were complete. Other files are
+/// kept. The summary is removed first, because its presence marks a folder as complete.
 pub fn remove_earlier(folder: &Path) -> Result<bool, Box<dyn Error>> {
     const NAMES: [&str; 14] = [
         "summary.json",
@@ -100,10 +99,10 @@ pub fn remove_earlier(folder: &Path) -> Result<bool, Box<dyn Error>> {
         "spectrum.svg",
     ];
     let was_complete = folder.join("summary.json").exists();
-    // What was drawn is known by the records, which go after it.
+    // Listed before the columns and the summary that name them are removed.
     let drawn = pictures_by_name(folder);
     let named = NAMES.into_iter().chain(pictures::NAMES).map(|name| folder.join(name));
-    let mut doomed: Vec<_> = named.collect();
+    let mut to_remove: Vec<_> = named.collect();
     let inside = |folder: &Path, start: &str, end: &str| {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         let paths = entries.map(|entry| entry.path());
@@ -113,13 +112,13 @@ pub fn remove_earlier(folder: &Path) -> Result<bool, Box<dyn Error>> {
         });
         named.collect::<Vec<_>>()
     };
-    doomed.extend(inside(folder, "probe_", ".svg"));
-    doomed.extend(drawn);
+    to_remove.extend(inside(folder, "probe_", ".svg"));
+    to_remove.extend(drawn);
     let files = folder.join(fields::FOLDER);
     for kind in ["fields_", "mode_"] {
-        doomed.extend(inside(&files, kind, ".vtu"));
+        to_remove.extend(inside(&files, kind, ".vtu"));
     }
-    for path in doomed {
+    for path in to_remove {
         match std::fs::remove_file(&path) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
                 return Err(format!("cannot replace {}: {error}", path.display()).into());
@@ -131,8 +130,8 @@ pub fn remove_earlier(folder: &Path) -> Result<bool, Box<dyn Error>> {
     Ok(was_complete)
 }
 
-/// Pictures of what goes by a name in the earlier results, as `series_front_loads.svg`: of the bodies, sensors and bearings
-/// that the columns beside them are of. Pictures of anything else stay, whatever they are called.
+/// Pictures of the named bodies, sensors and bearings of the earlier results, such as `series_front_loads.svg`. The names
+/// come from the columns and the summary; other pictures are kept.
 fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
     const OF_BODIES: [&str; 4] = ["series_", "orbit_", "run_up_", "spectrum_"];
     const OF_BEARINGS: [&str; 4] = ["load_zone_", "slip_", "spin_", "polar_"];

@@ -1,4 +1,4 @@
-//! What was understood of a scene, as JSON with units, and what follows from it.
+//! The resolved scene as JSON with units, its Hertz constants and kinematic frequencies.
 
 use bearing_dynamics::ch2_housing::bearing::geometry::{
     BearingKind, ClearanceThrough, Material, Raceway,
@@ -13,13 +13,11 @@ use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
 
-/// What any scene may say of itself.
 pub fn head(title: &Option<String>, source: &Option<String>) -> Map<String, Value> {
     let given = [("title", title), ("source", source)].into_iter();
     given.filter_map(|(name, text)| Some((name.into(), json!(text.as_ref()?)))).collect()
 }
 
-/// The resolved scene, every dimensional value with its unit.
 pub fn scene(scene: &Scene) -> Echo {
     let mut echo = head(&scene.title, &scene.source);
     echo.insert("bearing".into(), bearing(scene)?);
@@ -84,7 +82,7 @@ fn bearing(scene: &Scene) -> Echo {
     Ok(echo)
 }
 
-/// As written in a scene.
+/// Name, as in a scene, of the part that is resized to give the clearance.
 pub fn through(part: ClearanceThrough) -> &'static str {
     match part {
         ClearanceThrough::Ball => "ball",
@@ -138,7 +136,7 @@ fn cage(cage: &Cage) -> Echo {
     Ok(Value::Object(echo))
 }
 
-/// A coordinate in the unit an engineer reads it in.
+/// A coordinate of the race, in um or deg.
 fn coordinate(name: &str, value: f64, index: usize) -> Echo {
     if index < 3 {
         quantity(name, value * 1e6, "um")
@@ -169,7 +167,7 @@ fn conditions(scene: &Scene) -> Echo {
     Ok(Value::Object(echo))
 }
 
-/// Parts of the summary beside the solution itself.
+/// Sections of the summary in addition to the solution: Hertz contacts and kinematic frequencies.
 pub fn sections(
     scene: &Scene,
     problem: &StaticProblem,
@@ -178,7 +176,6 @@ pub fn sections(
     Ok(vec![("hertz".into(), hertz(contacts)?), ("frequencies".into(), frequencies(scene)?)])
 }
 
-/// Of the inner and the outer race.
 pub fn hertz([inner, outer]: [&HertzContact; 2]) -> Echo {
     let contact = |contact: &HertzContact| -> Echo {
         Ok(json!({
@@ -194,14 +191,14 @@ pub fn hertz([inner, outer]: [&HertzContact; 2]) -> Echo {
     }))
 }
 
-/// Kinematic frequencies over shaft frequency, and in Hz where a speed is given. Where the outer race turns they go with
-/// its speed against the inner one's, and the cage is carried along.
+/// Kinematic frequencies as ratios to the shaft frequency, and in Hz if a speed is given. If the outer race turns,
+/// they follow from the relative speed of the races, and its frequency is added to that of the cage.
 pub fn frequencies(scene: &Scene) -> Echo {
     let ratios = kinematic_ratios(scene);
     let inner = scene.inner_speed.map(|speed| speed / std::f64::consts::TAU);
     let outer = scene.outer_speed.map_or(0.0, |speed| speed / std::f64::consts::TAU);
     let mut echo = Map::new();
-    for (name, ratio, carried) in [
+    for (name, ratio, added) in [
         ("cage", ratios.cage, outer),
         ("ball_pass_outer", ratios.ball_pass_outer, 0.0),
         ("ball_pass_inner", ratios.ball_pass_inner, 0.0),
@@ -210,12 +207,12 @@ pub fn frequencies(scene: &Scene) -> Echo {
         let mut entry = Map::new();
         let turns = inner.unwrap_or(0.0);
         let relative = turns - outer;
-        // How often something passes has no sign once both races turn.
+        // Passing frequencies have no sign if both races turn.
         let relative = if outer != 0.0 && name != "cage" { relative.abs() } else { relative };
-        let frequency = carried + ratio * relative;
+        let frequency = added + ratio * relative;
         let against =
             |shaft: f64| if name == "cage" { frequency / shaft } else { frequency / shaft.abs() };
-        // A ratio to the shaft that stands still says nothing: then it is to the outer race.
+        // The ratio is to the outer race if the shaft is at rest.
         if outer == 0.0 {
             entry.insert("over_shaft".into(), quantity(name, ratio, "1")?);
         } else if turns != 0.0 {

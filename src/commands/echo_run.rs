@@ -1,4 +1,4 @@
-//! What was understood of the bearing in motion, as JSON with units.
+//! Motion, numerics and output of a scene as JSON with units.
 
 use bearing_dynamics::assembly::lists::BallMeeting;
 use bearing_dynamics::assembly::loads::{
@@ -19,13 +19,13 @@ use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
 
-/// Defaults in use: for a run those of its motion too, without what they say of statics alone.
+/// Defaults in use; for a run also those of its motion, without those of statics alone.
 pub fn defaults(scene: &Scene) -> Vec<DefaultUsed> {
     let mut all = scene.defaults_used.clone();
     if scene.dynamics.run.is_none() {
         return all;
     }
-    // Centrifugal force is no matter of choice where balls have mass and move.
+    // In a run the centrifugal force follows from the motion of the balls.
     all.retain(|used| used.key != "ball_forces.centrifugal");
     let outer_moves = scene.dynamics.outer.is_some();
     for used in all.iter_mut().filter(|used| outer_moves && used.key.starts_with("outer_race.")) {
@@ -35,7 +35,6 @@ pub fn defaults(scene: &Scene) -> Vec<DefaultUsed> {
     all
 }
 
-/// Assumptions and defaults in use, for `check`.
 pub fn notes(assumptions: &[Assumption], defaults: &[DefaultUsed]) -> [(&'static str, Value); 2] {
     let assumption = |a: &Assumption| json!({ "name": a.name, "text": a.text });
     let default =
@@ -46,7 +45,7 @@ pub fn notes(assumptions: &[Assumption], defaults: &[DefaultUsed]) -> [(&'static
     ]
 }
 
-/// How a run is computed, under the keys of the scene.
+/// Numerical settings of a run, under the keys of the scene.
 pub fn numerics(run: &RunSettings) -> Echo {
     let options = &run.options;
     let (name, value, unit) = match options.stepping {
@@ -67,7 +66,7 @@ pub fn numerics(run: &RunSettings) -> Echo {
     }))
 }
 
-/// What is written: of a run its columns, window and plots; otherwise the plots of statics.
+/// Output: columns, averaging window and plots of a run, or the plots of statics.
 pub fn output(scene: &Scene) -> Echo {
     let of_statics = |plot: &Plot| match plot {
         Plot::LoadZone => "load-zone",
@@ -85,7 +84,7 @@ pub fn output(scene: &Scene) -> Echo {
         RunPlot::SlipSpin => "slip-spin",
         RunPlot::RunUp => "run-up",
     };
-    // Loads over azimuth are drawn of either.
+    // Statics and runs have polar plots.
     let polar = scene.plots.iter().filter(|plot| **plot == Plot::Polar).map(of_statics);
     let plots: Vec<&str> = scene.dynamics.plots.iter().map(of_run).chain(polar).collect();
     Ok(json!({
@@ -95,7 +94,6 @@ pub fn output(scene: &Scene) -> Echo {
     }))
 }
 
-/// Bodies, their loads and motions, and the laws between them.
 pub fn motion(problem: &DynamicProblem) -> Echo {
     let mut echo = Map::new();
     echo.insert("ball".into(), json!({ "inertia": inertia(&problem.ball)? }));
@@ -115,20 +113,19 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     if !matches!(problem.assembly().bearings[0].ball_meeting(), BallMeeting::KeptApart { .. }) {
         echo.insert("ball_contact".into(), ball_contact(problem)?);
     }
-    turning(&mut echo, problem.rotating_load.as_ref(), problem.unbalance)?;
+    rotating_loads(&mut echo, problem.rotating_load.as_ref(), problem.unbalance)?;
     Ok(Value::Object(echo))
 }
 
-/// A rigid body besides races and cages.
 pub fn body(body: &SceneBody) -> Echo {
     let mut echo = race(&body.race)?;
     if let Value::Object(map) = &mut echo {
-        turning(map, body.rotating_load.as_ref(), body.unbalance)?;
+        rotating_loads(map, body.rotating_load.as_ref(), body.unbalance)?;
     }
     Ok(echo)
 }
 
-fn turning(
+fn rotating_loads(
     echo: &mut Map<String, Value>,
     load: Option<&RotatingLoad>,
     unbalance: f64,
@@ -285,7 +282,7 @@ fn pairs(points: &[[f64; 2]], x_unit: &str, y_unit: &str) -> Echo {
     Ok(json!(points.iter().map(pair).collect::<Result<Vec<Value>, ResultsError>>()?))
 }
 
-/// A quantity over time; a constant is a plain quantity.
+/// A function of time with its unit; a constant becomes a plain quantity.
 pub(super) fn profile(profile: &Profile, unit: &str) -> Echo {
     let value = |name: &str, value: f64| quantity(name, value, unit);
     let second = |name: &str, value: f64| quantity(name, value, "s");

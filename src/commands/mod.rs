@@ -1,4 +1,4 @@
-//! One file a subcommand; here what they share.
+//! Subcommands of `bearing`, one module each, and the functions that they share.
 
 mod asked;
 pub mod assembly;
@@ -37,38 +37,38 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a command came to when nothing stood in its way.
+/// Result of a command that ended without an error.
 pub enum Outcome {
     Done,
     /// `compare` found a difference.
     Different,
 }
 
-/// Any error that ends a command: it is shown as one message, with exit code 2.
+/// An error ends the command: it is printed as one message, with exit code 2.
 pub type CommandResult = Result<Outcome, Box<dyn Error>>;
 
-/// Keys of a scene that the command line replaces.
+/// Scene keys replaced on the command line (`--set`).
 #[derive(clap::Args)]
 pub struct Changes {
-    /// key=value in place of what the scene says, as `sweep --vary` writes one; repeat it for more keys
+    /// Replace the value of a scene key, with keys and values as for `sweep --vary`; repeat for more keys
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
 }
 
 impl Changes {
-    /// The same changes as they are written behind a command.
+    /// The changes as command-line arguments, with a leading space.
     pub fn again(&self) -> String {
         self.set.iter().map(|change| format!(" --set \"{change}\"")).collect()
     }
 
-    /// The scene with its keys replaced; says which others had to go.
+    /// Reads the scene and replaces its keys; prints a note for each key that this removes.
     pub fn read(&self, scene: &Path) -> Result<Document, Box<dyn Error>> {
         let (document, notes) = self.read_quietly(scene)?;
         notes.iter().try_for_each(|note| say(&format!("note: {note}\n")))?;
         Ok(document)
     }
 
-    /// The scene with its keys replaced, and what is to be said of that.
+    /// Reads the scene and replaces its keys; returns the notes instead of printing them.
     pub fn read_quietly(&self, scene: &Path) -> Result<(Document, Vec<String>), Box<dyn Error>> {
         let mut document = Document::read_file(scene)?;
         let (mut keys, mut notes) = (Vec::new(), Vec::new());
@@ -81,12 +81,12 @@ impl Changes {
                 return Err(format!("--set {change}: {key} is set twice; give it once").into());
             }
             notes.extend(reach(&document, "--set", change, key)?);
-            let gone = document.set(key, value.trim())?;
-            if let Some(other) = gone.iter().find(|gone| keys.contains(*gone)) {
+            let removed = document.set(key, value.trim())?;
+            if let Some(other) = removed.iter().find(|other| keys.contains(*other)) {
                 return Err(format!("--set {change}: it excludes {other}, which is set too").into());
             }
-            notes.extend(gone.iter().map(|gone| {
-                format!("--set {change}: {gone} of the scene, which it excludes, is gone")
+            notes.extend(removed.iter().map(|other| {
+                format!("--set {change}: {other} of the scene, which it excludes, is removed")
             }));
             keys.push(key);
         }
@@ -94,10 +94,10 @@ impl Changes {
     }
 }
 
-/// Whether the process was told to stop; `again` is what a second signal does.
+/// Flag set by the first interrupt signal; `again` is called at the second.
 ///
 /// # Errors
-/// Signals that cannot be heard.
+/// If the signal handler cannot be installed.
 pub fn interruption(again: fn()) -> Result<Arc<AtomicBool>, Box<dyn Error>> {
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = interrupted.clone();
@@ -109,10 +109,10 @@ pub fn interruption(again: fn()) -> Result<Arc<AtomicBool>, Box<dyn Error>> {
     Ok(interrupted)
 }
 
-/// What is to be said where tables with names have their own value for a key that has none.
+/// Note on named tables that override `key` by their own value; `None` if there are none.
 ///
 /// # Errors
-/// A key that reaches nothing.
+/// If all named tables override it, so that `key` has no effect.
 pub fn reach(
     document: &Document,
     flag: &str,
@@ -127,7 +127,7 @@ pub fn reach(
         let name = &own[0];
         let rest = &key[table.len()..];
         return Err(format!(
-            "{flag} {given}: {key} reaches nothing, since {all} {} a value of {} own; write {table}.{name}{rest}",
+            "{flag} {given}: {key} has no effect, because {all} {} a value of {} own; write {table}.{name}{rest}",
             if own.len() == 1 { "has" } else { "have" },
             if own.len() == 1 { "its" } else { "their" }
         )
@@ -135,14 +135,14 @@ pub fn reach(
     }
     Ok((!own.is_empty()).then(|| {
         format!(
-            "{flag} {given}: {all} {} a value of {} own, which stays",
+            "{flag} {given}: {all} {} a value of {} own, which is kept",
             if own.len() == 1 { "has" } else { "have" },
             if own.len() == 1 { "its" } else { "their" }
         )
     }))
 }
 
-/// Writes to standard output, without what a terminal would obey; a reader that went away
+/// Writes to standard output, with terminal control characters made visible. A closed pipe
 /// (`bearing … | head`) is no error.
 pub fn say(text: &str) -> Result<(), Box<dyn Error>> {
     match std::io::stdout().lock().write_all(visible(text).as_bytes()) {
@@ -153,7 +153,7 @@ pub fn say(text: &str) -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// An error that shows only with the mesh, with its place in the scene where it has one.
+/// An error that depends on the mesh, with its position in the scene if it has one.
 pub fn placed(
     document: &Document,
     about: Option<About>,
@@ -165,7 +165,7 @@ pub fn placed(
     }
 }
 
-/// What every summary has of a scene: itself, its plan, assumptions and defaults.
+/// Scene, plan, assumptions and defaults for a summary.
 pub fn record(
     scene: Value,
     plan: Vec<Item>,
@@ -187,7 +187,7 @@ pub fn record(
     }
 }
 
-/// `results/NAME-KIND` unless a folder was given: one folder for each kind of result of a scene.
+/// The folder given, or `results/NAME-KIND`: one folder for each kind of result of a scene.
 pub fn results_folder(scene: &Path, kind: &str, given: &Option<PathBuf>) -> PathBuf {
     given.clone().unwrap_or_else(|| {
         let mut name = scene.file_stem().unwrap_or(scene.as_os_str()).to_os_string();

@@ -25,9 +25,9 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let document = Document::read_file(&path)?;
     let subject = resolve_subject(&document)?;
     let Subject::Assembly(scene) = subject else {
-        // Refused, with the reason, before anything is written.
+        // Returns the reason.
         resolve(&document)?;
-        return Err("a pack takes bearings".into());
+        return Err("a case pack needs a scene with bearings".into());
     };
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("toml");
     let name = format!("scene.{extension}");

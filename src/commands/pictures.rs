@@ -12,16 +12,16 @@ use nalgebra::SVector;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Positions of the ball set over one ball pitch for the polar plot: 16 make a smooth curve.
+/// Positions of the ball set over one ball pitch for the polar plot: 16 give a smooth curve.
 const PHASES: usize = 16;
-/// Tilts on the moment curve, and its end where the scene gives none (twice that of 3.4.5).
+/// Number of tilts on the moment curve, and its largest tilt if the scene gives none (twice that of 3.4.5).
 const TILTS: usize = 25;
 const LARGEST_TILT_DEGREES: f64 = 0.3;
 
 /// File names of the plots, in the order of [`Plot`].
 pub const NAMES: [&str; 3] = ["load_zone.svg", "polar.svg", "moment_tilt.svg"];
 
-/// Writes the plots that the scene asks for and returns their paths.
+/// Writes the requested plots; returns their paths.
 pub fn write(
     folder: &Path,
     scene: &Scene,
@@ -46,7 +46,7 @@ pub fn write(
     Ok(written)
 }
 
-/// Normal load between ball and race as a ball travels round the bearing.
+/// Normal load between ball and race over the azimuth of the ball.
 fn force_over_azimuth(
     title: &str,
     problem: &StaticProblem,
@@ -67,7 +67,7 @@ fn force_over_azimuth(
     }
     let [outer, inner] = curves;
     let mut shown = vec![Curve::new("ball on outer race", outer)];
-    // Without forces on the balls both curves are one.
+    // Without forces on the balls both curves coincide.
     let differ = solution
         .balls
         .iter()
@@ -104,6 +104,6 @@ fn moment_over_tilt(title: &str, problem: &StaticProblem) -> Result<String, Box<
         x: Axis::linear("tilt about Y", "deg"),
         y: Axis::linear("moment about Y", "N m"),
         style: Style::LinesAndMarkers,
-        curves: vec![Curve::new("moment that holds the tilt", points)],
+        curves: vec![Curve::new("reaction moment", points)],
     })?)
 }

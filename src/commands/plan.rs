@@ -22,7 +22,6 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-/// Says items, a line each, and then notes.
 pub fn say_plan(items: &[Item], notes: &[String]) -> Result<(), Box<dyn Error>> {
     items.iter().try_for_each(|item| say(&format!("{item}\n")))?;
     notes.iter().try_for_each(|line| say(&format!("{line}\n")))

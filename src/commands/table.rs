@@ -1,4 +1,4 @@
-//! A static solution as a person reads it on a terminal.
+//! Printed tables of a static solution.
 
 use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
 use bearing_dynamics::equilibrium::statics::{
@@ -8,7 +8,7 @@ use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::output::warnings::{Warning, lines};
 use std::fmt::Write;
 
-/// Position, reactions, stiffness, balls, `housing` in lines of its own, and warnings.
+/// Position, reactions, stiffness, balls, lines on the `housing`, and warnings.
 pub fn render(solution: &StaticSolution, housing: &str, warnings: &[Warning]) -> String {
     let mut text = String::new();
     race(&mut text, solution);
@@ -30,7 +30,7 @@ pub fn render(solution: &StaticSolution, housing: &str, warnings: &[Warning]) ->
     text + &lines(warnings)
 }
 
-/// The same of several bodies and bearings; `names` are those of the bearings, `housings` lines of their own.
+/// [`render`] for several bodies and bearings; `names` are those of the bearings, `housings` the lines on housings.
 pub fn render_assembly(
     assembly: &StaticAssembly,
     names: &[&str],
@@ -55,7 +55,7 @@ pub fn render_assembly(
     }
     sections(&mut text, assembly, solution);
     if loaded.len() > 1 {
-        text += "stiffness is that of each body with all others held; summary.json has what is between them\n\n";
+        text += "stiffness is that of each body with all others fixed; summary.json has the coupling terms\n\n";
     }
     for (name, bearing) in names.iter().zip(&solution.bearings) {
         let [force, _] = &bearing.forces;
@@ -84,7 +84,6 @@ pub fn render_assembly(
     text + &lines(warnings)
 }
 
-/// Sections of bodies that bend, a line each.
 fn sections(text: &mut String, assembly: &StaticAssembly, solution: &AssemblySolution) {
     let bodies = assembly.bodies.iter().zip(&solution.coordinates);
     let all: Vec<_> = bodies.filter(|(body, _)| matches!(body.place, Place::Section(_))).collect();
@@ -112,7 +111,7 @@ fn race(text: &mut String, solution: &StaticSolution) {
     coordinates(text, "inner race", q.as_slice(), loads.as_slice(), largest);
 }
 
-/// Five coordinates of a body and what holds it there; `largest` ball load, N.
+/// Five coordinates of a body and the loads on it; `largest` is the largest ball load, N.
 fn coordinates(text: &mut String, body: &str, q: &[f64], loads: &[f64], largest: f64) {
     let _ = writeln!(text, "{body:<15} displacement, tilt      load, moment");
     for (i, name) in COORDINATE_NAMES.iter().enumerate() {
@@ -124,8 +123,8 @@ fn coordinates(text: &mut String, body: &str, q: &[f64], loads: &[f64], largest:
     }
 }
 
-/// In N and N mm over um and mrad, in which the matrix is symmetric and its numbers are of one
-/// size: N um and N mm mrad are the same work.
+/// Stiffness in N and N mm per um and mrad. The matrix is symmetric in these units, because
+/// 1 N um = 1 N mm mrad, and its numbers are of similar size.
 fn stiffness(text: &mut String, of: impl Fn(usize, usize) -> f64) {
     let _ = write!(text, "\nstiffness  ");
     for (i, name) in COORDINATE_NAMES.iter().enumerate() {
@@ -174,7 +173,7 @@ fn ball_lines(text: &mut String, balls: &[BallState]) {
     }
 }
 
-/// `value` with `digits` decimals; what rounds to zero has no sign.
+/// `value` with `digits` decimals; zero has no sign.
 fn fixed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     match text.strip_prefix('-') {
@@ -183,7 +182,7 @@ fn fixed(value: f64, digits: usize) -> String {
     }
 }
 
-/// A load that only rounding keeps from zero is shown as zero.
+/// The load, or zero if it is rounding error relative to the `largest` ball load.
 fn without_noise(load: f64, largest: f64, index: usize) -> f64 {
     let lever = if index < 3 { 1.0 } else { 1.0e-1 };
     if load.abs() <= 1e-9 * largest * lever { 0.0 } else { load }

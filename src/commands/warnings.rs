@@ -1,4 +1,4 @@
-//! Warnings of commands on bearings: one set for equilibria and runs.
+//! Warnings about equilibria and runs of bearings.
 
 use crate::commands::bushing_warnings;
 use bearing_dynamics::assembly::lists::Bearing;
@@ -23,39 +23,39 @@ use std::f64::consts::{PI, TAU};
 
 /// Pressure above which ISO 76 expects permanent deformation in ball bearings, Pa.
 const STATIC_RATING: f64 = 4200e6;
-/// A ball this close to the bottom of the groove, in rad, needs no shoulder.
+/// Contact angle below which a ball needs no shoulder, rad.
 const BOTTOM: f64 = 1e-6;
-/// How far beyond the nominal contact angle, rad, shoulders that are not given reach at least in an
-/// angular-contact bearing.
+/// Smallest angle from the nominal contact angle to an estimated shoulder of an angular-contact bearing, rad.
 const BEYOND_NOMINAL: f64 = 15.0 / 180.0 * PI;
-/// Smallest centrifugal force on a ball, as a part of the largest ball load, that is warned of.
+/// Smallest ratio of centrifugal force to the largest ball load that gives a warning.
 const CENTRIFUGAL: f64 = 0.05;
 
-/// What warnings on the balls of a bearing are made of; times are those of a run, s.
+/// Extremes of the ball contacts of a bearing; times of a run in s.
 #[derive(Clone, Debug, Default)]
-struct Seen {
-    /// Inner, outer: largest load, N; farthest end of a contact ellipse and the contact angle there, rad.
+struct ContactExtremes {
+    /// Largest load on the inner and the outer race, N.
     loads: [Extreme; 2],
+    /// Largest angle from the bottom of the groove to the end of a contact ellipse, and its contact angle, rad.
     edges: [Extreme; 2],
     edge_angles: [f64; 2],
     /// Balls loaded at a negative contact angle, counted from 1.
     reversed: Vec<usize>,
-    /// Load between two balls, N, and its pressure, Pa.
+    /// Largest load between two balls, N, and its pressure, Pa.
     between: Extreme,
     between_pressure: f64,
-    moves: bool,
+    in_run: bool,
 }
 
-impl Seen {
+impl ContactExtremes {
     fn when(&self, of: &Extreme) -> String {
-        if self.moves { format!(" at t = {} s", display_time(of.time)) } else { String::new() }
+        if self.in_run { format!(" at t = {} s", display_time(of.time)) } else { String::new() }
     }
 }
 
-/// Warnings on an equilibrium.
+/// Warnings about an equilibrium.
 ///
 /// # Errors
-/// A section that is bent too far.
+/// If a section is tilted beyond the range of linear bending.
 pub fn of_equilibrium(
     scene: &AssemblyScene,
     assembly: &StaticAssembly,
@@ -65,7 +65,7 @@ pub fn of_equilibrium(
     let mut warnings = bushing_warnings::of_equilibrium(scene, assembly, solution);
     if let Determinacy::Indeterminate { free_directions } = &solution.determinacy {
         let text = format!(
-            "the position is one of many, because {} directions meet no stiffness: load or preload the bearings, or prescribe these coordinates",
+            "the position is not determined, because {} directions have no stiffness: load or preload the bearings, or prescribe these coordinates",
             free_directions.len()
         );
         warnings.push(Warning::new(WarningCode::IndeterminatePosition, text));
@@ -84,7 +84,7 @@ pub fn of_equilibrium(
     Ok(warnings)
 }
 
-/// Refuses a section that is turned against its body by more than small bending allows.
+/// Returns an error if a section is tilted from its body beyond the range of linear bending.
 fn refuse_bent(
     assembly: &StaticAssembly,
     solution: &AssemblySolution,
@@ -92,12 +92,12 @@ fn refuse_bent(
     for (body, own) in assembly.bodies.iter().zip(&solution.coordinates) {
         let Place::Section(of) = &body.place else { continue };
         let whole = &solution.coordinates[assembly.shafts[of.shaft].body];
-        let turn = libm::hypot(own[3] - whole[3], own[4] - whole[4]);
-        if turn > FARTHEST_BENT {
+        let tilt = libm::hypot(own[3] - whole[3], own[4] - whole[4]);
+        if tilt > FARTHEST_BENT {
             return Err(format!(
-                "the section of {} is turned by {:.1} deg against its body. Allowed: up to {:.1} deg, because bending is linear. Hint: check loads                  and their units",
+                "the section of {} is tilted by {:.1} deg from its body. Allowed: up to {:.1} deg, because bending is linear. Hint: check loads and their units",
                 body.name,
-                turn.to_degrees(),
+                tilt.to_degrees(),
                 FARTHEST_BENT.to_degrees()
             )
             .into());
@@ -106,19 +106,22 @@ fn refuse_bent(
     Ok(())
 }
 
-/// Largest loads and contact ellipses in an equilibrium.
-fn at_rest(scene: &Scene, balls: &[BallState]) -> Seen {
+fn at_rest(scene: &Scene, balls: &[BallState]) -> ContactExtremes {
     let geometry = &scene.geometry;
     let grooves = [geometry.inner.groove_radius, geometry.outer.groove_radius];
-    let mut seen = Seen::default();
+    let mut seen = ContactExtremes::default();
     let reversed =
         |contact: &ContactState| contact.normal_load > 0.0 && contact.contact_angle < -BOTTOM;
     for (ball, state) in balls.iter().enumerate() {
         for (side, contact) in [&state.inner, &state.outer].into_iter().enumerate() {
-            take(&mut seen.loads[side], contact.normal_load, ball);
+            update_largest(&mut seen.loads[side], contact.normal_load, ball);
             let angle = contact.contact_angle.abs();
             if contact.normal_load > 0.0
-                && take(&mut seen.edges[side], angle + contact.semi_major / grooves[side], ball)
+                && update_largest(
+                    &mut seen.edges[side],
+                    angle + contact.semi_major / grooves[side],
+                    ball,
+                )
             {
                 seen.edge_angles[side] = angle;
             }
@@ -130,7 +133,6 @@ fn at_rest(scene: &Scene, balls: &[BallState]) -> Seen {
     seen
 }
 
-/// Warnings on a run of bearings, from all its steps and rows.
 pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
     let mut warnings = of_bushings(scene);
     if let Some(simulation) = session.motion.bearing() {
@@ -146,7 +148,6 @@ pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
     warnings
 }
 
-/// With the name of the bearing that they are about.
 fn named<'w>(
     placed: &'w PlacedBearing,
     warnings: impl Iterator<Item = Warning> + 'w,
@@ -155,13 +156,12 @@ fn named<'w>(
     warnings.map(move |warning| warning.named(&name))
 }
 
-/// Largest loads and contact ellipses of all steps.
-fn in_motion(problem: &Bearing, extremes: &Extremes) -> Seen {
+fn in_motion(problem: &Bearing, extremes: &Extremes) -> ContactExtremes {
     let races = extremes.races.iter().filter(|race| race.reversed.value > BOTTOM);
     let mut reversed: Vec<usize> = races.map(|race| race.reversed.ball + 1).collect();
     reversed.sort_unstable();
     reversed.dedup();
-    Seen {
+    ContactExtremes {
         loads: extremes.races.map(|race| race.load),
         edges: extremes.races.map(|race| race.edge),
         edge_angles: extremes.races.map(|race| race.edge_angle),
@@ -170,12 +170,12 @@ fn in_motion(problem: &Bearing, extremes: &Extremes) -> Seen {
         between_pressure: problem.ball_contact.map_or(0.0, |law| {
             peak_pressure(&law, problem.geometry.ball_radius, extremes.between_balls.value)
         }),
-        moves: true,
+        in_run: true,
     }
 }
 
-/// Whether `value` is the largest so far.
-fn take(largest: &mut Extreme, value: f64, ball: usize) -> bool {
+/// Updates `largest`; returns whether `value` is larger.
+fn update_largest(largest: &mut Extreme, value: f64, ball: usize) -> bool {
     let larger = value > largest.value;
     if larger {
         *largest = Extreme { value, ball, time: 0.0 };
@@ -183,8 +183,7 @@ fn take(largest: &mut Extreme, value: f64, ball: usize) -> bool {
     larger
 }
 
-/// Warnings that equilibrium and motion have in common.
-fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Vec<Warning> {
+fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &ContactExtremes) -> Vec<Warning> {
     let all = [
         on_open_side(scene, seen),
         past_shoulder(scene, seen),
@@ -193,7 +192,11 @@ fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Vec<Warni
     all.into_iter().flatten().collect()
 }
 
-fn above_rating(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Option<Warning> {
+fn above_rating(
+    scene: &Scene,
+    contacts: [&HertzContact; 2],
+    seen: &ContactExtremes,
+) -> Option<Warning> {
     let pressure =
         |side: usize| contact_ellipse(contacts[side], seen.loads[side].value).peak_pressure;
     let side = if pressure(1) > pressure(0) { 1 } else { 0 };
@@ -216,9 +219,9 @@ fn above_rating(scene: &Scene, contacts: [&HertzContact; 2], seen: &Seen) -> Opt
     })
 }
 
-/// An angular-contact bearing has a shoulder on one side of each groove only; the model's groove is
-/// a whole torus and carries on either side.
-fn on_open_side(scene: &Scene, seen: &Seen) -> Option<Warning> {
+/// Load on the open side of an angular-contact bearing. The groove of the model is a full torus and
+/// supports loads on either side.
+fn on_open_side(scene: &Scene, seen: &ContactExtremes) -> Option<Warning> {
     if scene.geometry.contact_angle <= 0.0 || seen.reversed.is_empty() {
         return None;
     }
@@ -231,7 +234,7 @@ fn on_open_side(scene: &Scene, seen: &Seen) -> Option<Warning> {
     Some(Warning::new(WarningCode::LoadOnOpenSide, text))
 }
 
-/// Where the groove of each race ends, rad from its bottom, and whether the scene says so.
+/// Angle of each race's shoulder from the bottom of its groove, rad, and whether the scene gives it.
 fn shoulders(scene: &Scene) -> [(f64, bool); 2] {
     let sizes = &scene.dimensions;
     let races = [&sizes.inner_race, &sizes.outer_race];
@@ -245,8 +248,8 @@ fn shoulders(scene: &Scene) -> [(f64, bool); 2] {
     })
 }
 
-/// The model's groove has no shoulder; of a contact past the real one's a part is missing.
-fn past_shoulder(scene: &Scene, seen: &Seen) -> Option<Warning> {
+/// Contact ellipse past the shoulder, which the groove of the model does not have.
+fn past_shoulder(scene: &Scene, seen: &ContactExtremes) -> Option<Warning> {
     let ends = shoulders(scene);
     let past = |side: usize| seen.edges[side].value - ends[side].0;
     let side = if past(1) > past(0) { 1 } else { 0 };
@@ -274,7 +277,6 @@ fn past_shoulder(scene: &Scene, seen: &Seen) -> Option<Warning> {
     Some(Warning::new(WarningCode::ContactPastShoulder, text))
 }
 
-/// A bearing that turns, solved without the centrifugal force of its balls.
 fn centrifugal_left_out(scene: &Scene, balls: &[BallState]) -> Option<Warning> {
     let speed = orbital_speed(scene);
     if scene.centrifugal || speed == 0.0 {
@@ -283,7 +285,7 @@ fn centrifugal_left_out(scene: &Scene, balls: &[BallState]) -> Option<Warning> {
     let force = ball_mass(scene) * speed * speed * scene.geometry.pitch_radius;
     let loads = balls.iter().map(|ball| ball.inner.normal_load.max(ball.outer.normal_load));
     let largest = loads.fold(0.0, f64::max);
-    // NaN is no force.
+    // False for NaN.
     (force > CENTRIFUGAL * largest).then(|| {
         let part = if largest > 0.0 {
             format!("{:.1} % of the largest ball load", 100.0 * force / largest)
@@ -297,14 +299,14 @@ fn centrifugal_left_out(scene: &Scene, balls: &[BallState]) -> Option<Warning> {
     })
 }
 
-/// Rows that are too far apart for what drives the scene: what they show of it is folded to other frequencies.
+/// Output interval too long for the fastest excitation, which appears aliased in the rows.
 fn between_rows(scene: &AssemblyScene, interval: f64) -> Option<Warning> {
     let end = scene.run().map_or(0.0, |run| run.end);
     let turning = |rotation: &Rotation, unbalanced: bool| match rotation {
         Rotation::Speed(speed) if unbalanced => largest(speed, end) / TAU,
         _ => 0.0,
     };
-    // Balls that pass are seen where spectra are looked at.
+    // Ball passing matters for spectra only.
     let spectra = scene.common().dynamics.plots.contains(&RunPlot::Spectrum);
     let driven =
         excitations(scene).into_iter().filter(|of| of.repeats && (spectra || !of.is_ripple));
@@ -325,10 +327,10 @@ fn between_rows(scene: &AssemblyScene, interval: f64) -> Option<Warning> {
     aliased(&what, frequency, interval)
 }
 
-/// Rows `interval` (s) apart that are too few for an excitation (Hz).
+/// Warning if an excitation of `frequency` (Hz) has fewer than two rows, `interval` (s) apart, in a period.
 pub fn aliased(what: &str, frequency: f64, interval: f64) -> Option<Warning> {
-    let seen = frequency * interval <= 0.5;
-    (!seen).then(|| {
+    let resolved = frequency * interval <= 0.5;
+    (!resolved).then(|| {
         let text = format!(
             "rows are {} s apart, more than half a period of {what} ({} Hz): shorten numerics.output_interval, {} s for eight rows a period",
             to_digits(interval, 3),
@@ -339,7 +341,7 @@ pub fn aliased(what: &str, frequency: f64, interval: f64) -> Option<Warning> {
     })
 }
 
-/// Warnings on bushings that a plan knows already.
+/// Warnings about bushings that do not depend on a solution.
 pub fn of_bushings(scene: &AssemblyScene) -> Vec<Warning> {
     let in_steps = scene.springs.iter().filter(|spring| {
         let elements = spring.bushing.as_ref().and_then(|of| of.elements.as_ref());
@@ -356,7 +358,6 @@ pub fn of_bushings(scene: &AssemblyScene) -> Vec<Warning> {
     faster_than_fitted(scene).into_iter().chain(locking).collect()
 }
 
-/// An excitation that is faster than the springs of a bushing were fitted for.
 fn faster_than_fitted(scene: &AssemblyScene) -> Option<Warning> {
     let fitted = scene.springs.iter().filter_map(|spring| Some((spring, spring.bushing.as_ref()?)));
     let fitted = fitted.filter(|(_, bushing)| bushing.elements.is_none());

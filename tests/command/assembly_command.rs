@@ -61,7 +61,7 @@ fn keys_that_named_tables_have_for_themselves_are_told() {
     let load = "body.z.load=-300 N, -5000 N";
     let message = refused(&["sweep", &path, "--vary", load, "--out", &out]);
     assert!(
-        message.contains("reaches nothing, since [body.shaft] has a value of its own"),
+        message.contains("has no effect, because [body.shaft] has a value of its own"),
         "{message}"
     );
     assert!(message.contains("write body.shaft.z.load"), "{message}");
@@ -74,9 +74,9 @@ fn keys_that_named_tables_have_for_themselves_are_told() {
         .replace("[bearing.left]", "[bearing.left]\nball_phase = \"3 deg\"");
     let path = write(folder.path(), "own.toml", &own);
     let said = done(&["statics", &path, "--set", "bearing.ball_phase=5 deg", "--dry"]);
-    assert!(said.contains("[bearing.left] has a value of its own, which stays"), "{said}");
+    assert!(said.contains("[bearing.left] has a value of its own, which is kept"), "{said}");
     let said = done(&["statics", &path, "--set", "bearing.right.ball_phase=5 deg", "--dry"]);
-    assert!(!said.contains("which stays"), "{said}");
+    assert!(!said.contains("which is kept"), "{said}");
 }
 
 #[test]
@@ -389,7 +389,7 @@ fn modes_of_a_shaft_are_those_of_its_stiffness_and_mass() {
     let held = held.replace("inertia =", "# inertia =");
     let path = write(folder.path(), "held.toml", &format!("{BEARING}{ENDS}{held}"));
     let said = refused(&["modes", &path]);
-    assert!(said.contains("nothing is left to swing"), "{said}");
+    assert!(said.contains("there is no mode"), "{said}");
 }
 
 /// Bending is of small turns: a thin shaft whose end bends far is told by how much, against the shaft as a whole; a thick one
@@ -441,7 +441,7 @@ load = [{{ at = "28 mm", z = "{load}" }}]
     let thin = write(folder.path(), "bent.toml", &with("4 mm", "5e4 N m/rad", "0 N m", "-1000 N"));
     let message = refused(&["statics", &thin, "--out", &text(&folder.path().join("thin"))]);
     assert!(
-        message.contains("the section of the body shaft at its load is turned by"),
+        message.contains("the section of the body shaft at its load is tilted by"),
         "{message}"
     );
     assert!(message.contains("Allowed: up to 5.7 deg"), "{message}");

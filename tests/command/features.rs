@@ -314,7 +314,7 @@ fn error_control(place: &Place) -> Cell {
     let complete = json(&place.path("accuracy/summary.json"))["complete"] == true;
     let Some((_, rest)) = said.split_once("accuracy 0.0001: ") else { place.fail(&said) };
     let words = rest.lines().next().unwrap_or("");
-    place.yes(complete && words.contains("steps follow from it"), &said)?;
+    place.yes(complete && words.contains("adaptive steps"), &said)?;
     // What stands for the whole run begins with the steps, what does not with whose they are.
     Ok(if words.starts_with("steps") { String::new() } else { words.to_string() })
 }

@@ -226,17 +226,17 @@ fn plan_and_check_say_what_is_chosen_and_offered() {
     };
     let said = succeed(command("plan", &place.scene("fast.toml", &fast("quasi-static")), &[]));
     // Two of five layers of nodes lie beside a race half as wide as the bore.
-    assert!(said.contains("72 of 120 bore nodes; 48 beside the race"), "{said}");
+    assert!(said.contains("72 of 120 bore nodes; left out are 48 not under the race"), "{said}");
     let said = succeed(command("plan", &place.scene("explicit.toml", &fast("explicit")), &[]));
-    let tested = "at the start 72 bore nodes tested, 0 out of reach";
-    for part in ["does  explicit housing", "windows of", tested] {
+    let tested = "at the start 72 bore nodes tested for contact, 0 too far away";
+    for part in ["does  explicit housing", "coupling steps of", tested] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(said.contains("memory of condensing"), "{said}");
     // It factorises nothing: a limit far below what factors need refuses a run by equilibria alone.
     let little = ["--memory", "0.001"];
     let said = succeed(command("plan", &place.path("explicit.toml"), &little));
-    assert!(said.contains("windows of") && said.contains("REFUSED"), "{said}");
+    assert!(said.contains("coupling steps of") && said.contains("REFUSED"), "{said}");
     let out = place.path("out");
     let output = into_folder("run", &place.path("slow.toml"), &out, &little).output().unwrap();
     let error = stderr(&output);
@@ -296,7 +296,7 @@ fn shipped_scenes_run() {
     assert_eq!(touching.last().copied(), Some(kept));
     // 2.4.3: balls and race swing after the blow.
     let (said, series, summary) = run("housing_impact");
-    assert!(said.contains("bore nodes in reach"), "{said}");
+    assert!(said.contains("bore nodes near the race"), "{said}");
     let force = column(&series, "contact_force_on_outer_z");
     assert!(force.iter().copied().fold(0.0, f64::min) < -400.0, "{force:?}");
     assert!(value(&summary["energy"]["largest_residual_part"]) <= 1e-4);

@@ -159,7 +159,7 @@ fn balls_press_outwards_in_a_run_and_not_in_statics() {
         (
             "2000 rpm",
             force,
-            "does  centrifugal force on balls   in `run`, as the cage goes round; \
+            "does  centrifugal force on balls   in `run`, because the cage rotates; \
                              `statics` leaves it out",
         ),
         ("0 rpm", 0.0, "skips centrifugal force on balls   not asked for"),
@@ -198,8 +198,8 @@ fn a_plan_counts_nodes_in_reach_at_the_start_only() {
         ),
     );
     let said = succeed(command("plan", &scene, &[]));
-    let expected = "at the start 0 bore nodes tested, 72 out of reach, sorted anew each time that \
-                    race and bore have moved by 35.5 um";
+    let expected = "at the start 0 bore nodes tested for contact, 72 too far away, sorted again after each \
+                    motion of race and bore by 35.5 um";
     assert!(said.contains(expected), "{said}");
     let out = place.path("out");
     succeed(into_folder("run", &scene, &out, &[]));
@@ -212,7 +212,10 @@ fn a_plan_counts_nodes_in_reach_at_the_start_only() {
         "[numerics]\nend = \"0.1 ms\"\noutput_interval = \"0.1 ms\"\n",
     );
     let said = succeed(command("plan", &place.scene("tight.toml", &tight), &[]));
-    assert!(said.contains("at the start 72 bore nodes tested, 0 out of reach\n"), "{said}");
+    assert!(
+        said.contains("at the start 72 bore nodes tested for contact, 0 too far away\n"),
+        "{said}"
+    );
 }
 
 /// The number that stands before `words` in what is said.
@@ -256,8 +259,8 @@ fn a_plan_foretells_the_windows_of_a_run() {
         let out = place.path(&format!("out-{index}"));
         succeed(into_folder("run", scene, &out, &[]));
         let summary = json(out.join("summary.json"));
-        let windows = count_before(&plan, " windows of ");
-        let (_, after) = plan.split_once(" windows of ").unwrap();
+        let windows = count_before(&plan, " coupling steps of ");
+        let (_, after) = plan.split_once(" coupling steps of ").unwrap();
         let each = match after.contains(", each one step of the housing") {
             true => 1,
             false => count_before(after, " steps of the housing"),

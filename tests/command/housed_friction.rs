@@ -26,7 +26,7 @@ fn a_rough_bore_holds_its_race_and_tells_of_it() {
     let place = Place::new();
     let scene = place.scene("scene.toml", &rough(GIVEN, "2 ms"));
     let said = succeed(command("check", &scene, &[]));
-    for part in ["friction in the bore", "coefficient 0.6, slips from 0.1 nm on", "free"] {
+    for part in ["friction in the bore", "coefficient 0.6, slips beyond 0.1 nm", "free"] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(

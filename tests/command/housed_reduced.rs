@@ -41,7 +41,10 @@ fn it_moves_as_in_explicit_steps() {
     };
     let (explicit, _) = run("explicit", &blow("explicit", "1 ms", ""));
     let (shapes, said) = run("shapes", &blow("reduced", "1 ms", NOMINAL));
-    assert!(said.contains("natural shapes up to") && said.contains("static answers"), "{said}");
+    assert!(
+        said.contains("natural modes up to") && said.contains("static correction modes"),
+        "{said}"
+    );
     assert!(said.contains("bore                   penetration up to"), "{said}");
     // Of the largest value: accuracy 1e-3, and shapes that are cut off.
     for name in ["outer_z", "inner_z", "bore_deepest_penetration", "energy_housing_strain"] {
@@ -203,8 +206,8 @@ fn the_plan_says_what_presses_shapes_are_made_for() {
     );
     // m e ω² with ω = 1000 rpm.
     let unbalance = 0.01 * (1000.0 * TAU / 60.0_f64).powi(2);
-    let shafts_said = format!("presses of {:.0} N,", 3000.0 + unbalance);
-    for (text, said) in [(alone, "presses of 900 N or 3 N m,".into()), (shafts, shafts_said)] {
+    let shafts_said = format!("loads of {:.0} N", 3000.0 + unbalance);
+    for (text, said) in [(alone, "loads of 900 N or 3 N m".into()), (shafts, shafts_said)] {
         let plan = succeed(command("plan", &place.scene("scene.toml", &text), &[]));
         assert!(plan.contains(&said), "{said} is not in {plan}");
     }
@@ -250,10 +253,10 @@ fn plan_and_check_say_what_moves_and_what_is_cut_off() {
     let plan = succeed(command("plan", &scene, &[]));
     for said in [
         "does  reduced housing",
-        "notes shapes of the housing",
+        "notes modes of the housing",
         "notes cut off",
-        "the lowest natural shape left out swings at",
-        "of what goes with inner_race.z",
+        "the lowest natural mode left out is at",
+        "of the response to inner_race.z",
     ] {
         assert!(plan.contains(said), "{said} is not in {plan}");
     }

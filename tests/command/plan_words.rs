@@ -60,11 +60,11 @@ fn steps_that_windows_cut_are_told() {
         done(&["plan", &write(folder.path(), "scene.toml", &text)])
     };
     let plain = plan("", "");
-    assert!(!plain.contains("cut to the window"), "{plain}");
+    assert!(!plain.contains("cut to the coupling step"), "{plain}");
     let given = plan("", "step = \"1 us\"");
-    assert!(given.contains("numerics.step = 1e-6 s is cut to the window"), "{given}");
+    assert!(given.contains("numerics.step = 1e-6 s is cut to the coupling step"), "{given}");
     let part = plan("step_fraction = 0.95\nwindow_phase = 0.01\n", "");
-    assert!(part.contains("housing.step_fraction = 0.95 comes to 0."), "{part}");
+    assert!(part.contains("housing.step_fraction = 0.95 becomes 0."), "{part}");
 }
 
 /// However many shapes a shaft has, and however stiff: steps of the search go by what bodies stand on.
@@ -92,7 +92,7 @@ fn an_equilibrium_is_found_with_any_number_of_shapes() {
 #[test]
 fn a_plan_tells_the_imbalance_of_a_mesh() {
     let plan = said_of(&["plan"], "rotor_in_elements.toml", &[]);
-    assert!(plan.contains("out of balance by a couple of 1600 g mm^2, which"), "{plan}");
+    assert!(plan.contains("an unbalance of a couple of 1600 g mm^2, which"), "{plan}");
 }
 
 /// A shaft thicker than the groove of the race on it, rubber that begins inside its race, sizes in a wrong unit.

@@ -129,7 +129,7 @@ fn a_run_has_the_forces_of_the_steps_and_relaxes_to_statics() {
     let scene = place.scene("scene.toml", &numerics("0.2 s"));
     let out = place.path("out");
     let said = succeed(into_folder("run", &scene, &out, &[]));
-    assert!(said.contains("accuracy 0.001: steps follow from it"), "{said}");
+    assert!(said.contains("accuracy 0.001: adaptive steps"), "{said}");
     let ramp = Profile::Ramp { from: 0.0, to: 5e-4, start: 0.0, duration: 0.1 };
     let (model, inner) = model(ramp);
     let options = StepOptions { stepping: Stepping::Accuracy(1e-3), ..StepOptions::default() };

@@ -285,8 +285,8 @@ fn a_given_step_is_held_against_the_largest_stable_one() {
     let limit: f64 = limit.split(' ').next().unwrap().parse().unwrap();
     for (part, verdict) in [
         (0.5, "): stable at the start; "),
-        (1.05, "): WARNING: longer than stable; "),
-        (1.2, "): WARNING: too long, the run will be refused; "),
+        (1.05, "): longer than stable; "),
+        (1.2, "): too long, the run will be refused; "),
     ] {
         let said = said(&format!("step = \"{:e} s\"\n", part * limit));
         let line = said.lines().find(|line| line.starts_with("notes given step")).unwrap();

@@ -63,7 +63,7 @@ fn the_plan_says_how_long_the_steps_are_and_what_makes_them_short() {
     assert!(said(&output).contains("decay at "), "{}", said(&output));
     let adaptive = plan(&text.replace("\"rk4\"", "\"rosenbrock\""));
     assert!(
-        adaptive.contains("adapts to keep the error") && adaptive.contains("0.001"),
+        adaptive.contains("adaptive: error of the races' motion") && adaptive.contains("0.001"),
         "{adaptive}"
     );
 }
@@ -171,7 +171,7 @@ fn a_bushing_in_elements_is_told_as_such() {
     let housed = include_str!("../../scenes/housing_impact.toml");
     let scene = place.scene("both.toml", &housed.replace("[numerics]", &spring));
     let plan = said_by(&bearing(&["plan", scene.to_str().unwrap()]));
-    let steps: Vec<&str> = plan.lines().filter(|line| line.contains("windows of")).collect();
+    let steps: Vec<&str> = plan.lines().filter(|line| line.contains("coupling steps of")).collect();
     assert!(matches!(steps[..], [one] if one.contains("of the bushing mount")), "{plan}");
 }
 
@@ -301,7 +301,7 @@ fn modes_of_a_loose_race_that_spins_are_none() {
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let said = said(&output);
     assert!(
-        said.contains("not computed: no bearing load and no spring holds what spins"),
+        said.contains("not computed: the rotor has no support by a bearing load or a spring"),
         "{said}"
     );
     assert!(said.contains("warning[W01-indeterminate-position]"), "{said}");

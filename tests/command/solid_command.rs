@@ -120,7 +120,8 @@ fn a_struck_bar_carries_the_wave_and_rings() {
     let out = place.path("out");
     let scene = shipped("bar_impact.toml");
     let said = succeed(into_folder("run", &scene, &out, &[]));
-    for part in ["of the stability limit", "fastest element", "a row every", "fields every 40 rows"]
+    for part in
+        ["of the stability limit", "limiting element", "a row every", "fields every 40 rows"]
     {
         assert!(said.contains(part), "{part} is not in {said}");
     }

@@ -244,7 +244,7 @@ fn factors_that_do_not_fit_are_refused() {
     }
     assert!(!said.contains("REFUSED"), "{said}");
     let said = succeed(command("plan", &scene, &little));
-    assert!(said.contains("REFUSED: only 1 MB may be taken"), "{said}");
+    assert!(said.contains("REFUSED: only 1 MB available"), "{said}");
     for name in ["statics", "modes"] {
         let output = command(name, &scene, &little).arg("--dry").output().unwrap();
         let error = stderr(&output);

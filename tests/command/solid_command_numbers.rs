@@ -142,13 +142,13 @@ fn a_step_and_its_element() {
         assert_at(place_after(&message, "set by element"), deck.centre(element), MICROMETRE);
         // The same in the plan, whose places are in mm to three digits.
         let planned = succeed(command("plan", &path, &[]));
-        assert_eq!(after(&planned, "the fastest element is "), element);
+        assert_eq!(after(&planned, "the limiting element is "), element);
 
         let quiet = "[numerics]\nend = \"10 us\"\n";
         let path = scene(&place, &format!("{mesh}{}", pressed("\"1 MPa\"", quiet)));
         let out = place.path("out");
         let said = succeed(into_folder("run", &path, &out, &["--fresh"]));
-        assert_eq!(after(&said, "the fastest element, "), element);
+        assert_eq!(after(&said, "the limiting element, "), element);
         let summary = json(out.join("summary.json"));
         let named: &Value = &summary["step"]["limit"]["element"];
         assert_eq!(named["number"].as_u64(), Some(element), "{}", summary["step"]);
@@ -407,7 +407,7 @@ fn meshes_that_lock_or_are_too_coarse_are_warned_of() {
     let free = free.split_once("[[solid.fixed]]").unwrap().0.to_string() + "[modes]\ncount = 8\n";
     let said = succeed(command("modes", &place.scene("free.toml", &free), &["--dry"]));
     let rigid: Vec<bool> =
-        said.lines().skip(1).take(8).map(|line| line.contains("rigid-body motion")).collect();
+        said.lines().skip(1).take(8).map(|line| line.contains("rigid-body mode")).collect();
     assert_eq!(rigid, [true, true, true, true, true, true, false, false], "{said}");
     // The cause, not the load.
     let scene = place.scene("nearly.toml", &bent([10, 2, 2], 2, "0.4999999999", "-100 N"));

@@ -258,7 +258,7 @@ fn modes_of_what_a_torque_turns_say_that_they_want_a_speed() {
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         let said = said(&output);
         assert_eq!(
-            said.contains("a torque turns the body disc, so that its speed is not known"),
+            said.contains("the body disc is driven by a torque, so that its speed is not known"),
             told,
             "{said}"
         );

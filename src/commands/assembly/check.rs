@@ -1,4 +1,4 @@
-//! `bearing check` of bearings and what they sit on and in.
+//! `bearing check` of a scene of bearings.
 
 use super::echo::{echo, motion, numerics};
 use super::housing::Housing;
@@ -40,7 +40,6 @@ pub fn run(
     housings::refuse(document, &scene, &housings)?;
     let mut made = None;
     if let Some(settings) = scene.run().cloned() {
-        // Bearings that are to move have to make bodies, too.
         let assembly = scene.assembly()?;
         let mut request = request(scene.common(), &settings);
         if housings.is_empty() {
@@ -56,11 +55,11 @@ pub fn run(
     let meshes: Vec<_> = housings.iter().map(|of| (of.name.as_deref(), &of.built.mesh)).collect();
     let written = mesh.map(|file| file.write(&meshes)).transpose()?;
     if !json {
-        let sits = match scene.one() {
+        let mounting = match scene.one() {
             Some(_) => Vec::new(),
             None => lines(&Lists::made(scene, made))?,
         };
-        let lines = |line: &mut Line| of_scene(scene, &housings, sits, line);
+        let lines = |line: &mut Line| of_scene(scene, &housings, mounting, line);
         say_lines(document, &common.title, lines, &common.assumptions, &defaults)?;
         return say_written(written);
     }
@@ -80,11 +79,11 @@ pub fn run(
     say_json(understood, echo_run::output(common)?, &common.assumptions, &defaults)
 }
 
-/// Bearings and what they sit on (`sits`) and in, a line each.
+/// Bearings, their housings and their mounting (`mounting`), one line each.
 fn of_scene(
     scene: &AssemblyScene,
     housings: &[Housing],
-    sits: Vec<(String, String)>,
+    mounting: Vec<(String, String)>,
     line: &mut Line,
 ) {
     for (index, placed) in scene.bearings.iter().enumerate() {
@@ -93,22 +92,21 @@ fn of_scene(
         }
         bearing_lines(&placed.scene, line);
         for housing in housings.iter().filter(|housing| housing.bearing == index) {
-            housing.lines().into_iter().for_each(|(label, said)| line(&label, said));
+            housing.lines().into_iter().for_each(|(label, text)| line(&label, text));
         }
     }
     if scene.one().is_none() {
-        sits.into_iter().for_each(|(label, said)| line(&label, said));
+        mounting.into_iter().for_each(|(label, text)| line(&label, text));
     }
-    sensors(scene).into_iter().for_each(|(label, said)| line(&label, said));
+    sensors(scene).into_iter().for_each(|(label, text)| line(&label, text));
     for (label, value) in of_run(scene, housings) {
         line(label, value);
     }
 }
 
-/// What watches a run, a line each.
 fn sensors(scene: &AssemblyScene) -> Vec<(String, String)> {
     let of = |sensor: &SceneSensor| {
-        let said = match &sensor.kind {
+        let text = match &sensor.kind {
             SceneSensorKind::Accelerometer { at, along, radius, angle, direction } => format!(
                 "accelerometer on {}, {:.4} mm along its axis, {:.4} mm from it at {:.2} deg, {}",
                 scene.name_of_place(*at),
@@ -118,18 +116,17 @@ fn sensors(scene: &AssemblyScene) -> Vec<(String, String)> {
                 direction.name()
             ),
             SceneSensorKind::Telemeter { circuit, distance, .. } => format!(
-                "telemeter, {:.4} mm from its transceiver, watched at {:.4} MHz, natural frequency {:.4} MHz",
+                "telemeter, {:.4} mm from its transceiver, measured at {:.4} MHz, natural frequency {:.4} MHz",
                 1e3 * distance,
                 1e-6 * circuit.frequency,
                 1e-6 * circuit.natural_frequency()
             ),
         };
-        (format!("sensor {}", sensor.name), said)
+        (format!("sensor {}", sensor.name), text)
     };
     scene.sensors.iter().map(of).collect()
 }
 
-/// Kind and geometry, a line each.
 fn bearing_lines(scene: &Scene, line: &mut Line) {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
     let kind = match geometry.kind {
@@ -185,53 +182,51 @@ fn bearing_lines(scene: &Scene, line: &mut Line) {
     }
 }
 
-/// What a run computes, and how.
 fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, String)> {
     let Some(run) = scene.run() else { return Vec::new() };
     let (end, interval) = (run.end, run.output_interval);
     let rows = format!("to t = {end} s, a row every {interval} s");
-    let mut said = Vec::new();
+    let mut lines = Vec::new();
     match (scene.housing_method(), housings.first().map(|of| &of.scene.housing)) {
         (Some(HousingMethod::QuasiStatic), _) => {
-            said.push(("run", format!("to t = {end} s, an equilibrium every {interval} s")));
-            said.push(("motion", "none but along the equilibria: inertia is left out".into()));
+            lines.push(("run", format!("to t = {end} s, an equilibrium every {interval} s")));
+            lines.push(("motion", "quasi-static: inertia is left out".into()));
         }
         (Some(HousingMethod::Reduced), _) => {
-            said.push(("run", rows));
-            said.push(("steps", format!("{}, of bearing and housing together", stepping(run))));
+            lines.push(("run", rows));
+            lines.push(("steps", format!("{}, of bearing and housing together", stepping(run))));
         }
         (Some(HousingMethod::Explicit), Some(housing)) => {
-            let windows = format!(
-                "windows of {} of the seat's phase; the housing by central differences, {} of the \
-                 largest stable step; the bearing by {}",
+            let steps = format!(
+                "coupling steps of phase {} of the race-bore contact; the housing by central differences, {} \
+                 of the largest stable step; the bearing by {}",
                 housing.window_phase,
                 housing.step_fraction,
                 stepping(run)
             );
-            said.extend([("run", rows), ("steps", windows)]);
+            lines.extend([("run", rows), ("steps", steps)]);
         }
-        _ => said.push(("run", format!("to t = {end} s by {}", stepping(run)))),
+        _ => lines.push(("run", format!("to t = {end} s by {}", stepping(run)))),
     }
     if scene.housing_method() != Some(HousingMethod::QuasiStatic)
         && let Some(one) = scene.one()
     {
-        said.extend(bodies(&one.scene));
+        lines.extend(bodies(&one.scene));
     }
     if !housings.is_empty() || scene.has_shafts_in_elements() {
         let mut solids = of_housings(housings);
-        // Shafts are not meshed for this.
+        // Shafts are not meshed here.
         let beams = scene.bodies.iter().filter_map(|body| body.beam.as_deref());
         let shafts = beams.filter(|beam| beam.in_elements.is_some()).count();
         if shafts > 0 {
             solids = vec![0.0; solids.len() + shafts];
         }
         let fields = fields_size(end, interval, run.fields_interval, &solids);
-        said.push(("fields", fields.to_string()));
+        lines.push(("fields", fields.to_string()));
     }
-    said
+    lines
 }
 
-/// Integrator of the bearing and its steps.
 fn stepping(run: &RunSettings) -> String {
     let steps = match run.options.stepping {
         Stepping::Fixed(step) => format!("a step of {step:e} s"),
@@ -241,7 +236,7 @@ fn stepping(run: &RunSettings) -> String {
     format!("{}, {steps}", run.options.integrator.name())
 }
 
-/// How each body of a bearing moves in steps.
+/// Motion of each body of a bearing in a run.
 fn bodies(scene: &Scene) -> Vec<(&'static str, String)> {
     let dynamics = &scene.dynamics;
     let outer = match &dynamics.outer {
@@ -252,7 +247,7 @@ fn bodies(scene: &Scene) -> Vec<(&'static str, String)> {
         CageInRun::Body(_) => "a rigid body with six coordinates".into(),
         CageInRun::LeftOut(reason) => format!("left out: {reason}"),
     };
-    let balls = "six coordinates each; gyroscopic and centrifugal effects by themselves";
+    let balls = "six coordinates each, with gyroscopic and centrifugal effects";
     vec![
         ("inner race motion", race_freedom(&dynamics.inner)),
         ("outer race motion", outer),

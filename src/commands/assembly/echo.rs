@@ -1,4 +1,4 @@
-//! What was understood of a scene of bearings, as JSON with units.
+//! The resolved scene of bearings as JSON with units.
 
 use super::housing::method;
 use super::lists::Lists;
@@ -21,7 +21,6 @@ use bearing_dynamics::solids::bore_equilibrium::Axial;
 use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
 use serde_json::{Map, Value, json};
 
-/// The scene as understood, every dimensional value with its unit.
 pub fn echo(lists: &Lists) -> Fallible<Value> {
     let mut echo = match lists.scene.one() {
         Some(one) => of_one(one)?,
@@ -33,7 +32,6 @@ pub fn echo(lists: &Lists) -> Fallible<Value> {
     Ok(echo)
 }
 
-/// Of bearings and bodies with names.
 fn of_several(lists: &Lists) -> Fallible<Value> {
     let scene = lists.scene;
     let common = scene.common();
@@ -86,7 +84,7 @@ fn of_several(lists: &Lists) -> Fallible<Value> {
     Ok(Value::Object(echo))
 }
 
-/// A body that bends; places count from its centre.
+/// A flexible shaft; positions are from the centre of its body.
 fn shaft(of: &SceneBeam) -> Result<Value, ResultsError> {
     let millimetres = |name: &str, metres: f64| quantity(name, 1e3 * metres, "mm");
     let place = |at: f64| millimetres("at", at);
@@ -163,7 +161,7 @@ fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError>
     Ok(echo)
 }
 
-/// The rubber that a spring stands for, and by how much it misses its vibrations.
+/// Bushing that a spring represents, and the largest errors of the fit.
 fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
     let BushingOfSpring { body, mesh, material, table, fastest, misses, elements } = of;
     let millimetres = |name: &str, metres: f64| quantity(name, 1e3 * metres, "mm");
@@ -186,7 +184,7 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
                 ("implicit", "step", quantity("step", *step, "s")?)
             }
             BushingStepping::Implicit { step: None } => {
-                ("implicit", "step", json!("as the windows are"))
+                ("implicit", "step", json!("as the coupling steps"))
             }
         };
         (echo["method"], echo[key]) = (json!(method), value);
@@ -198,7 +196,6 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
     Ok(echo)
 }
 
-/// What a run is watched with.
 fn sensors(scene: &AssemblyScene) -> Result<Value, ResultsError> {
     let mut all = Map::new();
     for SceneSensor { name, kind } in &scene.sensors {
@@ -238,7 +235,7 @@ fn sensors(scene: &AssemblyScene) -> Result<Value, ResultsError> {
     Ok(Value::Object(all))
 }
 
-/// Of one bearing and what it sits in; with the housing how a run is computed.
+/// A single bearing and its housing; with a housing also motion and numerics of a run.
 fn of_one(one: &PlacedBearing) -> Fallible<Value> {
     let mut echo = bearing_echo::scene(&one.scene)?;
     let Some(PlacedHousing { settings, solid }) = &one.housing else { return Ok(echo) };
@@ -251,7 +248,7 @@ fn of_one(one: &PlacedBearing) -> Fallible<Value> {
     Ok(echo)
 }
 
-/// How a run is computed; of a course of equilibria what has a meaning without steps.
+/// Numerical settings of a run; for a quasi-static sequence only those without time steps.
 pub fn numerics(
     run: &RunSettings,
     housing: Option<&HousingSettings>,
@@ -269,7 +266,6 @@ pub fn numerics(
     Ok(echo)
 }
 
-/// Bodies, loads and laws of a motion.
 pub fn motion(scene: &AssemblyScene) -> Fallible<Value> {
     if let Some(alone) = scene.only() {
         return Ok(echo_run::motion(&dynamic_problem(alone)?)?);
@@ -287,7 +283,6 @@ pub fn motion(scene: &AssemblyScene) -> Fallible<Value> {
     Ok(Value::Object(bearings))
 }
 
-/// What `[housing]` says.
 fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
     let mut echo = Map::new();
     echo.insert("method".into(), json!(method(housing.method)));

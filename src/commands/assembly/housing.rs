@@ -1,4 +1,4 @@
-//! One flexible housing and the bearing in it: mesh, bore, seat, and what a person should know of them.
+//! A flexible housing and the bearing in it: mesh, bore, fit, and notes on them.
 
 use super::Fallible;
 use crate::commands::memory::within;
@@ -30,27 +30,24 @@ use bearing_dynamics::solids::support::free_motions;
 use bearing_dynamics::solids::tangent::Unknowns;
 use std::time::Instant;
 
-/// Part of the race's radius beyond which nodes of the bore count as out of reach until something
-/// has moved: many times what races move in their seats.
-const REACH: f64 = 2e-3;
+/// Distance from the race, as a part of its radius, beyond which bore nodes are not tested for contact until
+/// race or bore has moved. Races move far less in their bores.
+const TESTED_DISTANCE: f64 = 2e-3;
 
-/// What needs no factors.
+/// Alternative without matrix factors.
 const INSTEAD: &str = ", explicit steps (method = \"explicit\" in [housing])";
 
-/// A housing and the bearing that it holds.
 pub struct Housing {
-    /// Index of the bearing.
     pub bearing: usize,
-    /// Of the bearing; `None` for the only one.
+    /// Name of the bearing; `None` for a single one.
     pub name: Option<String>,
-    /// Both alone, where they stand.
+    /// Scene of this housing and its bearing, at their positions.
     pub scene: HousedScene,
     pub built: BuiltMesh,
     pub setup: HousingSetup,
     pub mesh_seconds: f64,
 }
 
-/// How a housing is solved, as the scene has it.
 pub fn method(method: HousingMethod) -> &'static str {
     match method {
         HousingMethod::QuasiStatic => "quasi-static",
@@ -60,7 +57,7 @@ pub fn method(method: HousingMethod) -> &'static str {
 }
 
 impl Housing {
-    /// Reads or makes the mesh; the document says where in the scene an error stands.
+    /// Reads or generates the mesh. The document locates errors in the scene.
     pub fn new(
         document: &Document,
         bearing: usize,
@@ -77,12 +74,12 @@ impl Housing {
         Ok(Housing { bearing, name, scene, built, setup, mesh_seconds })
     }
 
-    /// The document that it is written in.
+    /// The document with keys relative to this bearing.
     fn document(&self, whole: &Document) -> Document {
         self.name.as_ref().map_or_else(|| whole.clone(), |name| whole.scoped(name))
     }
 
-    /// What its way of being solved cannot have: loads that change, supports that move.
+    /// Returns an error for variable loads or moving supports that the solution method does not allow.
     pub fn refuse(&self, whole: &Document) -> Fallible<()> {
         let scene = &self.scene;
         let checked = match scene.housing.method {
@@ -93,12 +90,12 @@ impl Housing {
         checked.map_err(|error| placed(&self.document(whole), error.about(), error))
     }
 
-    /// What equilibria one after the other cannot have.
+    /// Returns an error for variable loads or moving supports, which a quasi-static sequence does not allow.
     pub fn constant(&self) -> Fallible<()> {
         Ok(check_constant(&self.scene)?)
     }
 
-    /// One that can move as a whole.
+    /// Returns an error if the housing can move as a rigid body.
     pub fn refuse_free(&self) -> Fallible<()> {
         let problem = &self.setup.solid.problem;
         let free = free_motions(&problem.nodes, &problem.prescribed);
@@ -106,15 +103,14 @@ impl Housing {
             return Ok(());
         }
         Err(format!(
-            "{}an equilibrium needs a housing that is held, and this one is free to move {}; add \
-             [[solid.fixed]]",
+            "{}the housing is free to move {}, and an equilibrium needs supports; add [[solid.fixed]]",
             self.before(),
             free.names()
         )
         .into())
     }
 
-    /// Sizes and memory of condensing it onto the nodes of its bore, from its structure alone.
+    /// Sizes and memory of condensing the housing onto its bore nodes, from the structure of its matrix alone.
     pub fn condensing(&self) -> Fallible<(Unknowns, Sizes, Memory)> {
         self.refuse_free()?;
         let setup = &self.setup;
@@ -124,7 +120,7 @@ impl Housing {
         Ok((unknowns, sizes, needed))
     }
 
-    /// Condensed onto the nodes of its bore under the race.
+    /// Housing condensed onto the bore nodes under the race.
     pub fn condensed(&self) -> Fallible<CondensedBore> {
         let setup = &self.setup;
         let (unknowns, _, needed) = self.condensing()?;
@@ -134,7 +130,7 @@ impl Housing {
         Ok(condensed.map_err(|error| named(&error))?)
     }
 
-    /// The race in its condensed bore, of this radius over time.
+    /// Fit of the race in the condensed bore, with its radius over time, m.
     pub fn course_seat<'b>(&self, bore: &'b CondensedBore, radius: Profile) -> QuasiStaticFit<'b> {
         QuasiStaticFit {
             name: self.name.clone(),
@@ -147,7 +143,7 @@ impl Housing {
         }
     }
 
-    /// The race as a body in the bore of explicit solid `solid`.
+    /// Fit of the race `body` in the bore of the explicit solid `solid`.
     pub fn seat(&self, body: usize, solid: usize) -> Seat {
         Seat {
             name: self.name.clone(),
@@ -158,7 +154,7 @@ impl Housing {
             penalty: self.scene.housing.penalty,
             friction: self.scene.housing.friction,
             nodes: self.setup.nodes.clone(),
-            reach: REACH * self.setup.bore_radius,
+            reach: TESTED_DISTANCE * self.setup.bore_radius,
         }
     }
 
@@ -167,24 +163,23 @@ impl Housing {
         self.name.as_ref().map_or("housing".into(), |name| format!("housing {name}"))
     }
 
-    /// "housing left: ", before what is said of it; nothing for the only one.
+    /// Prefix of messages, "housing left: "; empty for a single housing.
     pub fn before(&self) -> String {
         self.name.as_ref().map_or(String::new(), |name| format!("housing {name}: "))
     }
 
-    /// The file of the table of its bore.
+    /// File name of the table of bore nodes.
     pub fn bore_file(&self) -> String {
         self.name.as_ref().map_or("bore.csv".into(), |name| format!("bore_{name}.csv"))
     }
 
-    /// Nodes and elements as a person counts them.
     pub fn mesh_text(&self) -> String {
         let mesh = &self.built.mesh;
         let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
         format!("{} nodes, {} elements of {nodes_each}", mesh.nodes.len(), mesh.elements.len())
     }
 
-    /// Where its mesh comes from and how it is put in its place; nothing of one that is made there.
+    /// Mesh file and placement; empty for a mesh generated in place.
     fn place_text(&self) -> String {
         let mesh = &self.scene.solid.mesh;
         let from = match &mesh.source {
@@ -206,31 +201,30 @@ impl Housing {
         format!("{from}{}", put.unwrap_or_default())
     }
 
-    /// What a plan says of it, solid number `index`, solved this way.
+    /// Plan items of the housing, solid number `index`.
     pub fn items(&self, index: usize, method: &Method) -> Vec<Item> {
         let problem = &self.setup.solid.problem;
         solid::items(problem, index, Some(&self.label()), &self.mesh_text(), method)
     }
 
-    /// What a person should know of mesh and bore before results.
+    /// Notes on mesh and bore, printed before the results.
     pub fn notes(&self) -> Vec<String> {
         let caution = self.setup.caution.iter().map(|caution| format!("caution: {caution}"));
         let notes = mesh_notes(&self.built).into_iter().chain(caution);
         notes.map(|note| format!("{}{note}", self.before())).collect()
     }
 
-    /// Mesh, mass and seat, a line each.
     pub fn lines(&self) -> Vec<(String, String)> {
         let Housing { scene: HousedScene { housing, .. }, setup, .. } = self;
-        let said = format!("{}{}; {}", self.mesh_text(), self.place_text(), method(housing.method));
-        let mut lines = vec![(self.label(), said)];
-        let mut line = |label: &str, said: String| lines.push((label.into(), said));
+        let text = format!("{}{}; {}", self.mesh_text(), self.place_text(), method(housing.method));
+        let mut lines = vec![(self.label(), text)];
+        let mut line = |label: &str, text: String| lines.push((label.into(), text));
         for note in mesh_notes(&self.built) {
             line("note", note);
         }
         let mass: f64 = setup.model.mass.iter().sum();
-        let held = setup.solid.problem.prescribed.len();
-        line("housing mass", format!("{mass:.6} kg; {held} components held"));
+        let fixed = setup.solid.problem.prescribed.len();
+        line("housing mass", format!("{mass:.6} kg; {fixed} components fixed"));
         let um = 1e6 * setup.interference;
         let kind = match um {
             um if um > 0.0 => "interference",
@@ -238,7 +232,7 @@ impl Housing {
             _ => "transition",
         };
         line(
-            "seat",
+            "housing fit",
             format!(
                 "bore radius {:.4} mm, {} nodes, {:.4} mm wide; {kind} {um:+.4} um radial = {:+.4} um diametral",
                 1e3 * setup.bore_radius,
@@ -262,9 +256,9 @@ impl Housing {
             Penalty::PerArea(stiffness) => format!("{stiffness:e} N/m^3, by area"),
             Penalty::PerNode(stiffness) => format!("{stiffness:e} N/m for each node"),
         };
-        line("seat stiffness", stiffness);
+        line("contact stiffness", stiffness);
         let axial = match housing.axial {
-            Axial::Held => "held beside the bore",
+            Axial::Held => "fixed by a shoulder",
             Axial::Free => "free",
         };
         line("outer race, axially", axial.into());
@@ -272,7 +266,7 @@ impl Housing {
             let nm = rounded(1e9 * stretch);
             line(
                 "friction in the bore",
-                format!("coefficient {coefficient}, slips from {nm} nm on"),
+                format!("coefficient {coefficient}, slips beyond {nm} nm"),
             );
         }
         lines

@@ -1,4 +1,4 @@
-//! The flexible housings of a scene: meshes, and what they add to the lists of each way of solving.
+//! Flexible housings of a scene: meshes, and their part in each solution method.
 
 use super::Fallible;
 use super::housing::Housing;
@@ -29,7 +29,6 @@ use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
 use bearing_dynamics::solids::condensation::{CondensedBore, beyond_normals};
 use nalgebra::SVector;
 
-/// Reads or makes the meshes.
 pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housing>> {
     let mut housings = Vec::new();
     for (bearing, placed) in scene.bearings.iter().enumerate() {
@@ -42,7 +41,7 @@ pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housi
             None => housing?,
         };
         if housing.scene.housing.method != HousingMethod::Explicit {
-            // What cannot be condensed cannot be run.
+            // Condensing needs supports.
             housing.refuse_free()?;
         }
         housings.push(housing);
@@ -50,7 +49,7 @@ pub fn prepare(document: &Document, scene: &AssemblyScene) -> Fallible<Vec<Housi
     Ok(housings)
 }
 
-/// What the scene's way of solving cannot have.
+/// Returns an error for settings that the solution method of the scene does not allow.
 pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) -> Fallible<()> {
     let method = scene.housing_method();
     if method == Some(HousingMethod::QuasiStatic) {
@@ -65,16 +64,16 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
     {
         let place = document.place_of(&About::key("housing.method"));
         return Err(format!(
-            "{place}: housing.method: refused: {what} of the scene is solved in elements, beside which housings move in \
-             explicit steps only. Hint: write method = \"explicit\" in [housing], or method = \"reduced\" in {table}"
+            "{place}: housing.method: refused: {what} of the scene is solved in elements, with which housings need \
+             explicit steps. Hint: write method = \"explicit\" in [housing], or method = \"reduced\" in {table}"
         )
         .into());
     }
     if scene.has_shafts_in_elements() && document.is_given("numerics.start") {
         let place = document.place_of(&About::key("numerics.start"));
         return Err(format!(
-            "{place}: numerics.start: refused: a shaft of the scene is solved in elements, which start straight, races where they are first. \
-             Hint: leave it out, or write method = \"reduced\" in [body.NAME.beam.mesh]"
+            "{place}: numerics.start: refused: a shaft of the scene is solved in elements, which start undeformed, races in their initial \
+             positions. Hint: leave it out, or write method = \"reduced\" in [body.NAME.beam.mesh]"
         )
         .into());
     }
@@ -82,7 +81,7 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
     if scene.has_shafts_in_elements() && housings.iter().any(from_equilibrium) {
         let place = document.place_of(&About::key("housing.start"));
         return Err(format!(
-            "{place}: housing.start: refused: a shaft of the scene is solved in elements, which start straight. Hint: \
+            "{place}: housing.start: refused: a shaft of the scene is solved in elements, which start undeformed. Hint: \
              leave `start` out, or write method = \"reduced\" in [body.NAME.beam.mesh]"
         )
         .into());
@@ -90,7 +89,7 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
     housings.iter().try_for_each(|housing| housing.refuse(document))
 }
 
-/// What is said of steps where nothing is stepped in time.
+/// Returns an error if a quasi-static scene has keys of time steps.
 pub fn refuse_steps(document: &Document) -> Fallible<()> {
     const KEYS: [&str; 6] = [
         "numerics.accuracy",
@@ -102,17 +101,16 @@ pub fn refuse_steps(document: &Document) -> Fallible<()> {
     ];
     let Some(key) = KEYS.into_iter().find(|key| document.is_given(key)) else { return Ok(()) };
     let place = document.place_of(&About::key(key));
-    let reason = "equilibria one after the other take no steps in time";
+    let reason = "a quasi-static sequence has no time steps";
     let hint = "leave it out, or write method = \"reduced\" in [housing]";
     Err(format!("{place}: {key}: refused: {reason}. Hint: {hint}").into())
 }
 
-/// Each condensed onto its bore.
 pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {
     housings.iter().map(Housing::condensed).collect()
 }
 
-/// All with their races in their bores, to go through equilibria.
+/// Problem of a quasi-static sequence, with the races in their bores.
 pub fn course<'b>(
     assembly: Assembly,
     housings: &[Housing],
@@ -121,13 +119,13 @@ pub fn course<'b>(
     QuasiStaticProblem { assembly, seats: seats(housings, bores) }
 }
 
-/// Their races in their bores, as large as they are at any time.
+/// Fits of the races in their bores, with their radii over time.
 pub fn seats<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiStaticFit<'b>> {
     let seats = housings.iter().zip(bores);
     seats.map(|(of, bore)| of.course_seat(bore, of.setup.radius(&of.scene))).collect()
 }
 
-/// The same with races as fully grown into their fits.
+/// [`seats`] with the final radii of the races.
 pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiStaticFit<'b>> {
     let seat = |(of, bore): (&Housing, &'b CondensedBore)| {
         of.course_seat(bore, Profile::Constant(of.setup.fit(&of.scene).radius))
@@ -135,15 +133,14 @@ pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiS
     housings.iter().zip(bores).map(seat).collect()
 }
 
-/// What is in equilibrium at t = 0, and where.
 pub struct Equilibrium<'b> {
     pub still: StaticAssembly<'b>,
     pub moment: EquilibriumAt,
-    /// Of races in bores, with the contact there.
+    /// Problem and contact search of races in bores; `None` without them.
     pub in_bores: Option<(QuasiStaticProblem<'b>, WarmStartedSearch<'b>)>,
 }
 
-/// The equilibrium at t = 0, races grown into their fits; looked for `near` places that are known.
+/// Finds the equilibrium at t = 0, starting from the coordinates `near` if they are given.
 pub fn equilibrium<'b>(
     lists: &Lists,
     seats: Vec<QuasiStaticFit<'b>>,
@@ -156,14 +153,14 @@ pub fn equilibrium<'b>(
         return Ok(Equilibrium { still, moment, in_bores: None });
     }
     seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
-    let course = QuasiStaticProblem { assembly: lists.assembly()?.clone(), seats };
-    let mut search = WarmStartedSearch::of(&course.seats);
+    let problem = QuasiStaticProblem { assembly: lists.assembly()?.clone(), seats };
+    let mut search = WarmStartedSearch::of(&problem.seats);
     search.look_near(near);
-    let moment = course.solve(&mut search, &still, 0.0)?;
-    Ok(Equilibrium { still, moment, in_bores: Some((course, search)) })
+    let moment = problem.solve(&mut search, &still, 0.0)?;
+    Ok(Equilibrium { still, moment, in_bores: Some((problem, search)) })
 }
 
-/// Bodies, bearings, solids, seats, bushings and shafts for steps of their own.
+/// Bodies, bearings, solids, fits, bushings and shafts for explicit steps.
 pub fn explicit<'p>(
     scene: &AssemblyScene,
     mut assembly: Assembly,
@@ -177,7 +174,7 @@ pub fn explicit<'p>(
     Ok(HousedParts { bushings: bushings.iter().map(BushingElements::part).collect(), ..parts })
 }
 
-/// The same from undeformed housings, whatever the scene says.
+/// Bodies, bearings and undeformed housings for explicit steps, whatever start the scene gives.
 pub fn undeformed(
     lists: &Lists,
     housings: &[Housing],
@@ -205,7 +202,7 @@ fn parts<'p>(
             None => SolidPart::undeformed(name, model),
         });
     }
-    // All together are balanced, not the bearings alone.
+    // The energy balance is that of the whole scene, not of the bearings alone.
     let bearing = RunOptions { energy_limit: f64::INFINITY, ..run.options };
     let options = first.map_or(ExchangeOptions::without_housings(bearing), |of| ExchangeOptions {
         solid_fraction: of.step_fraction,
@@ -215,8 +212,8 @@ fn parts<'p>(
     Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
 }
 
-/// Puts races that explicit steps start from where all is in equilibrium; how far the nodes of their housings have
-/// gone there, m. Nothing where they start undeformed.
+/// Moves races to the equilibrium from which explicit steps start. Returns the nodal displacements of their
+/// housings there, m; empty if they start undeformed.
 fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec<Vec<Vec3>>> {
     if housings.is_empty() || !housings.iter().all(|of| of.scene.housing.from_equilibrium) {
         return Ok(Vec::new());
@@ -240,24 +237,24 @@ fn start_of_steps(assembly: &mut Assembly, housings: &[Housing]) -> Fallible<Vec
     Ok(displacements)
 }
 
-/// Where bodies rest under the loads at t = 0, races in their bores.
+/// Equilibrium of the bodies under the loads at t = 0, with the races in their bores.
 pub fn at_start(assembly: &Assembly, seats: &[QuasiStaticFit]) -> Fallible<AssemblySolution> {
     let mut still = static_assembly(assembly, 0.0, &[]);
     seats.iter().for_each(|seat| seat.add_to(&mut still, 0.0));
     Ok(solve_assembly(&still, None, &StaticOptions::default())?)
 }
 
-/// Looks at loads between two of their corners, and how long after the last one, s.
-const LOOKS: usize = 64;
+/// Samples of loads between two of their corners, and the time sampled after the last corner, s.
+const SAMPLES: usize = 64;
 const AFTER: f64 = 1.0;
 
-/// What presses and turns races in bores at most at any time, so that a run that is extended keeps its housings.
+/// Largest loads on races in bores at any time, also after the end, so that an extended run keeps its reduced housings.
 pub struct Largest {
-    /// Across their axes on all bodies but races in bores: what can strike, N.
+    /// Radial force on all bodies except races in bores, N: the part that can cause impacts.
     pub on_bodies: f64,
-    /// With what is on races in bores themselves, and what comes through shafts that bend, their loads and unbalances, N.
+    /// Radial force on all bodies and flexible shafts, with their unbalances, N.
     pub in_all: f64,
-    /// About axes across their own, on bodies, N·m.
+    /// Tilting moment on all bodies, N·m.
     pub moments: f64,
 }
 
@@ -265,10 +262,10 @@ impl Largest {
     pub fn of(assembly: &Assembly, housings: &[Housing]) -> Largest {
         let in_bores: Vec<usize> =
             housings.iter().map(|of| assembly.bearings[of.bearing].mounts[1].body).collect();
-        let bodies = |t: f64, is_meant: &dyn Fn(usize) -> bool| -> [f64; 2] {
+        let bodies = |t: f64, included: &dyn Fn(usize) -> bool| -> [f64; 2] {
             let bodies = assembly.bodies.iter().enumerate();
             bodies
-                .filter(|(index, _)| is_meant(*index))
+                .filter(|(index, _)| included(*index))
                 .filter_map(|(_, body)| on_body(assembly, body, t))
                 .fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
         };
@@ -285,7 +282,7 @@ impl Largest {
     }
 }
 
-/// Force across its axis, N, and moment about axes across it, N·m.
+/// Radial force, N, and tilting moment, N·m.
 fn on_body(assembly: &Assembly, body: &Body, t: f64) -> Option<[f64; 2]> {
     let loads = conditions(assembly, body, body.driven()?, t).map(|condition| match condition {
         Condition::Load(load) => load,
@@ -301,13 +298,13 @@ fn on_shaft(assembly: &Assembly, shaft: &ElasticShaft, t: f64) -> f64 {
     shaft.loads.iter().map(across).chain(unbalances).sum()
 }
 
-/// The largest value between corners of loads and speeds, and for a while after the last one.
+/// Largest value between corners of loads and speeds, and for [`AFTER`] after the last one.
 fn largest(assembly: &Assembly, at: impl Fn(f64) -> f64) -> f64 {
     let corners = assembly.corners();
     let mut largest: f64 = at(0.0);
     let mut from = 0.0;
     for to in corners.iter().copied().chain([corners.last().unwrap_or(&0.0) + AFTER]) {
-        let times = (1..=LOOKS).map(|i| from + (to - from) * i as f64 / LOOKS as f64);
+        let times = (1..=SAMPLES).map(|i| from + (to - from) * i as f64 / SAMPLES as f64);
         largest = times.map(&at).fold(largest, f64::max);
         from = to;
     }

@@ -1,8 +1,8 @@
-//! Part of a quasi-static answer that inertia would change, (f/f_n)²: of the fastest excitation against the lowest natural frequency.
+//! Effect of inertia on a quasi-static result, (f/f_n)²: fastest excitation over lowest natural frequency.
 
 use super::Fallible;
 use super::housing::Housing;
-use super::modes::natural_shapes;
+use super::modes::natural_modes;
 use bearing_dynamics::equilibrium::quasi_static_sequence::{EquilibriumAt, QuasiStaticProblem};
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::numeric::clock::to_digits;
@@ -13,10 +13,10 @@ use bearing_dynamics::solids::fixed_interface_modes::swinging_housing;
 use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 use serde_json::{Value, json};
 
-/// Natural modes of each housing that take part: four give the lowest frequency of a pillow block to 1e-5.
+/// Natural modes kept for each housing: four give the lowest frequency of a pillow block to 1e-5.
 const NATURAL: usize = 4;
 
-/// The lowest natural frequency and the fastest excitation of a scene in housings.
+/// The lowest natural frequency and the fastest excitation of a scene with housings.
 pub struct FrequencyRatio {
     /// Hz.
     lowest: f64,
@@ -24,13 +24,13 @@ pub struct FrequencyRatio {
 }
 
 impl FrequencyRatio {
-    /// About the equilibrium `found`; `None` where nothing is driven at a frequency, or nothing holds a race.
+    /// Ratio at the equilibrium `found`; `None` without a periodic excitation, or if a body has no stiffness.
     ///
     /// # Errors
-    /// Natural modes of a housing that are not found.
+    /// If the natural modes of a housing are not found.
     pub fn of(
         scene: &AssemblyScene,
-        course: &QuasiStaticProblem,
+        problem: &QuasiStaticProblem,
         housings: &[Housing],
         search: &WarmStartedSearch,
         found: &EquilibriumAt,
@@ -39,12 +39,12 @@ impl FrequencyRatio {
         let Some(fastest) = all.max_by(|a, b| a.frequency.total_cmp(&b.frequency)) else {
             return Ok(None);
         };
-        let bodies = course.moving();
+        let bodies = problem.moving();
         let mut masses = Vec::new();
-        for ((bore, seat), housing) in search.bores().iter().zip(&course.seats).zip(housings) {
-            let body = seat.body(&course.assembly);
+        for ((bore, seat), housing) in search.bores().iter().zip(&problem.seats).zip(housings) {
+            let body = seat.body(&problem.assembly);
             let Some(race) = bodies.iter().position(|of| of.body == body) else { continue };
-            let (natural, _) = natural_shapes(housing, bore.bore(), NATURAL)?;
+            let (natural, _) = natural_modes(housing, bore.bore(), NATURAL)?;
             masses.push(swinging_housing(bore, race, &natural, seat.damping));
         }
         let lowest = lowest_frequency(&found.solution.with_shapes, &bodies, &masses);
@@ -55,7 +55,7 @@ impl FrequencyRatio {
         (self.fastest.frequency / self.lowest).powi(2)
     }
 
-    /// As the summary of results has it.
+    /// Section of the summary.
     ///
     /// # Errors
     /// A value that is not finite.
@@ -70,7 +70,7 @@ impl FrequencyRatio {
 
     pub fn text(&self) -> String {
         format!(
-            "(f/f_n)² = {} of the displacement that goes with {} ({} Hz); lowest natural frequency {} Hz",
+            "(f/f_n)² = {} of the displacement caused by {} ({} Hz); lowest natural frequency {} Hz",
             to_digits(self.squared(), 2),
             self.fastest.what,
             to_digits(self.fastest.frequency, 4),

@@ -1,12 +1,12 @@
-//! A scene and what the solver takes of it.
+//! A scene and its assembly.
 
 use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::motion::DynamicsError;
 use std::cell::OnceCell;
 
-/// A scene and the lists of its bodies, bearings and shafts, which are made where they are asked for first, and once: those
-/// of a shaft of tetrahedra take seconds.
+/// A scene and the lists of its bodies, bearings and shafts. They are built once, at first use, because those of a
+/// shaft of tetrahedra take seconds.
 pub struct Lists<'s> {
     pub scene: &'s AssemblyScene,
     assembly: OnceCell<Assembly>,
@@ -17,12 +17,12 @@ impl<'s> Lists<'s> {
         Lists { scene, assembly: OnceCell::new() }
     }
 
-    /// With the lists that have been made already.
+    /// With an assembly that exists already.
     pub fn made(scene: &'s AssemblyScene, assembly: Option<Assembly>) -> Lists<'s> {
         Lists { scene, assembly: assembly.map_or_else(OnceCell::new, OnceCell::from) }
     }
 
-    /// The scene's lists.
+    /// Assembly of the scene.
     ///
     /// # Errors
     /// As [`AssemblyScene::assembly`].

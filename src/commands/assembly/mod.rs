@@ -1,4 +1,4 @@
-//! The commands on a scene of bearings, alone or with what they sit on and in; here what they share.
+//! Commands on a scene of bearings, and the functions that they share.
 
 pub mod check;
 pub mod echo;
@@ -30,8 +30,8 @@ use std::error::Error;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
-/// Defaults in use: of bodies and springs, then of each bearing, its seat and its housing; of a course of equilibria
-/// without what only motion needs.
+/// Defaults in use: of bodies and springs, then of each bearing, its fit and its housing; for a quasi-static
+/// sequence without those of motion.
 pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
     const OF_MOTION: [&str; 8] = [
         "traction",
@@ -62,7 +62,7 @@ pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
     scene.defaults_used.iter().cloned().chain(scene.bearings.iter().flat_map(of_bearing)).collect()
 }
 
-/// What `statics` finds the equilibrium of; of a bearing alone under the loads that are given, its outer race held, unless that
+/// Static problem of the scene; for a single bearing under the given loads with a fixed outer race, unless that
 /// moves by itself.
 pub fn still(lists: &Lists) -> Fallible<StaticAssembly<'static>> {
     Ok(match lists.scene.one_still().filter(|one| one.housing.is_none()) {
@@ -71,26 +71,26 @@ pub fn still(lists: &Lists) -> Fallible<StaticAssembly<'static>> {
     })
 }
 
-/// What results of a run or an equilibrium have of the scene: itself, its plan, assumptions and defaults.
+/// Scene, plan, assumptions and defaults for the summary.
 pub fn record(lists: &Lists, plan: Vec<Item>, seconds: Vec<(String, f64)>) -> Fallible<RunRecord> {
     let (assumptions, defaults) = (&lists.scene.common().assumptions, defaults(lists.scene));
     Ok(super::record(echo::echo(lists)?, plan, assumptions, &defaults, seconds))
 }
 
-/// Name of a bearing in tables of names.
+/// Name of a bearing; "bearing" for a single one.
 pub fn name_of(placed: &PlacedBearing) -> &str {
     placed.name.as_deref().unwrap_or("bearing")
 }
 
-/// Where bearings sit, how bodies move and what they weigh, a line each.
+/// Mounting of bearings, motion and mass of bodies, and springs, one line each.
 ///
 /// # Errors
 /// As [`AssemblyScene::assembly`].
 pub fn lines(lists: &Lists) -> Fallible<Vec<(String, String)>> {
     let (scene, assembly) = (lists.scene, lists.assembly()?);
-    let mut said = Vec::new();
+    let mut lines = Vec::new();
     for placed in &scene.bearings {
-        let sits = |carrier: &Carrier, own: &str| {
+        let mounting = |carrier: &Carrier, own: &str| {
             let on = match carrier {
                 Carrier::Own { .. } => own.to_string(),
                 Carrier::Body { index, .. } => format!("body.{}", scene.bodies[*index].name),
@@ -98,22 +98,22 @@ pub fn lines(lists: &Lists) -> Fallible<Vec<(String, String)>> {
             format!("{on} at {:.4} mm", 1e3 * carrier.at())
         };
         let [inner, outer] = &placed.carriers;
-        let way = if placed.reversed { ", reversed" } else { "" };
-        said.push((
+        let orientation = if placed.reversed { ", reversed" } else { "" };
+        lines.push((
             format!("bearing {}", name_of(placed)),
             format!(
-                "inner race on {}, outer race on {}{way}",
-                sits(inner, "a body of its own"),
-                sits(outer, "a body of its own")
+                "inner race on {}, outer race on {}{orientation}",
+                mounting(inner, "a body of its own"),
+                mounting(outer, "a body of its own")
             ),
         ));
     }
     // The scene's bodies come first.
     for (body, made) in scene.bodies.iter().zip(&assembly.bodies) {
         let mass = made.inertia().map_or(0.0, |inertia| inertia.mass);
-        let weighs =
+        let mass_text =
             if mass > 0.0 { format!("{} kg; ", to_digits(mass, 6)) } else { String::new() };
-        said.push((format!("body {}", body.name), weighs + &race_freedom(&body.race)));
+        lines.push((format!("body {}", body.name), mass_text + &race_freedom(&body.race)));
     }
     for spring in &scene.springs {
         let [from, to] = spring.ends.map(|end| scene.name_of_end(end.at));
@@ -122,19 +122,19 @@ pub fn lines(lists: &Lists) -> Fallible<Vec<(String, String)>> {
             1 => ", 1 Maxwell element".into(),
             count => format!(", {count} Maxwell elements"),
         };
-        said.push((format!("spring {}", spring.name), format!("from {from} to {to}{relaxing}")));
+        lines.push((format!("spring {}", spring.name), format!("from {from} to {to}{relaxing}")));
         if let Some(bushing) = &spring.bushing {
             let [x, y, _, turn_x, turn_y, _] = spring.stiffness;
-            said.push((
+            lines.push((
                 format!("bushing {}", spring.name),
                 format!(
                     "relaxed {x:.4e} N/m along, {y:.4e} N/m across, {turn_x:.4e} N m/rad about its axis, {turn_y:.4e} \
-                     N m/rad tilting; to {} Hz its springs miss its vibrations by {:.1e} at most",
+                     N m/rad tilting; to {} Hz its springs fit its vibrations with an error of {:.1e} at most",
                     bushing.fastest,
                     bushing.misses.iter().copied().fold(0.0, f64::max)
                 ),
             ));
         }
     }
-    Ok(said)
+    Ok(lines)
 }

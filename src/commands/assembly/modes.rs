@@ -1,7 +1,6 @@
-//! `bearing modes` of bearings and what they sit on and in: natural motions of the bodies about their equilibrium.
+//! `bearing modes` of a scene of bearings: natural modes about the equilibrium.
 //!
-//! Balls are springs without mass of their own. A housing takes part with the shapes that it has under its race, and with some of
-//! its natural ones.
+//! Balls are massless springs. A housing contributes its displacements under the race and some of its natural modes.
 
 use super::Fallible;
 use super::housing::Housing;
@@ -27,7 +26,7 @@ use bearing_dynamics::solids::fixed_interface_modes::{
     Natural, natural_shapes_of, swinging_housing,
 };
 use bearing_dynamics::solids::memory::modes_of_fixed;
-use bearing_dynamics::solids::modes::Mode as NaturalShape;
+use bearing_dynamics::solids::modes::Mode as NaturalMode;
 use bearing_dynamics::vibrations::quasi_static_limit::{HousingMass, MovingBody};
 use bearing_dynamics::vibrations::rotor::RotorError;
 use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, natural_motions, whirling};
@@ -47,19 +46,19 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let found = housings::equilibrium(&lists, housings::grown(&housings, &bores), None)?;
     let Equilibrium { still, moment, in_bores } = &found;
     let assembly = lists.assembly()?;
-    let bodies = taking_part(assembly, still);
+    let bodies = moving_bodies(assembly, still);
     if !bodies.iter().any(|body| body.free.contains(&true)) {
         let place = path.display();
-        return Err(format!("{place}: all coordinates are given: nothing is left to swing").into());
+        return Err(format!("{place}: all coordinates are prescribed: there is no mode").into());
     }
     let mut masses = Vec::new();
     let (mut first_left_out, mut of_housings) = (f64::INFINITY, Vec::new());
-    if let Some((course, search)) = in_bores {
-        let seats = course.seats.iter().zip(search.bores()).zip(&housings);
+    if let Some((problem, search)) = in_bores {
+        let seats = problem.seats.iter().zip(search.bores()).zip(&housings);
         for ((seat, bore), housing) in seats {
             let race = bodies.iter().position(|of| of.body == seat.body(assembly));
             let Some(race) = race else { continue };
-            let (natural, beyond) = natural_shapes(housing, bore.bore(), NATURAL)?;
+            let (natural, beyond) = natural_modes(housing, bore.bore(), NATURAL)?;
             first_left_out = first_left_out.min(beyond);
             let before = housing.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
             let mass = swinging_housing(bore, race, &natural, seat.damping);
@@ -70,7 +69,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let solution = &moment.solution;
     let found = natural_motions(still, solution, &bodies, &masses);
     if found.is_empty() {
-        let hint = "give it: body.NAME.inertia";
+        let hint = "give body.NAME.inertia";
         return Err(format!("{}: a body has no mass. Hint: {hint}", path.display()).into());
     }
     let names = names(still, &bodies, assembly, &of_housings);
@@ -84,10 +83,10 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let (spinning, no_whirl) = match spinning(assembly, still, solution, &bodies, &masses) {
         Ok(Some(whirling)) => (Some(Spinning::new(whirling, !masses.is_empty())?), None),
         Ok(None) => (None, by_torque(assembly)),
-        // Motions at rest are what they are.
+        // The modes at rest are valid without whirl.
         Err(why @ RotorError::Uneven { .. }) => (None, Some(why.to_string())),
         Err(RotorError::Unstable) if solution.determinacy != Determinacy::Determinate => {
-            (None, Some("no bearing load and no spring holds what spins".into()))
+            (None, Some("the rotor has no support by a bearing load or a spring".into()))
         }
         Err(error) => return Err(error.into()),
     };
@@ -125,34 +124,33 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-/// Natural shapes of a housing where the scene does not say up to which frequency: a pillow block has its lowest ones among them, and
-/// they cost less than condensing its bore.
+/// Natural modes of a housing without a limit in the scene: enough for a pillow block, and cheaper than condensing its bore.
 const NATURAL: usize = 12;
 
-/// Natural shapes of a housing that take part, `usual` of the lowest where the scene does not say up to which frequency, and the frequency
-/// of the first one that does not, Hz.
-pub(super) fn natural_shapes(
+/// Natural modes kept for a housing (the lowest `usual` ones without a limit in the scene), and the frequency of the
+/// first one left out, Hz.
+pub(super) fn natural_modes(
     housing: &Housing,
     bore: &CondensedBore,
     usual: usize,
-) -> Fallible<(Vec<NaturalShape>, f64)> {
+) -> Fallible<(Vec<NaturalMode>, f64)> {
     let natural = match housing.scene.housing.modes_to {
         Some(frequency) => Natural::UpTo(frequency),
         None => Natural::Lowest(usual),
     };
     let model = &housing.setup.model;
     refuse_beyond(&modes_of_fixed(bore.unknowns(), usual + 1), "")?;
-    let what = format!("{}natural shapes of the housing", housing.before());
+    let what = format!("{}natural modes of the housing", housing.before());
     Ok(spun(what, || natural_shapes_of(model, bore, natural))?)
 }
 
-/// Whether a speed is given to a body that is not zero throughout.
+/// Returns whether a body has a prescribed speed that is not always zero.
 fn has_speed(body: &Body) -> bool {
     let rotation = body.driven().map(|race| &race.rotation);
     matches!(rotation, Some(Rotation::Speed(speed)) if !speed.is_zero())
 }
 
-/// Why there is no whirl of what a torque turns.
+/// Reason for no whirl: a body is driven by a torque.
 fn by_torque(assembly: &Assembly) -> Option<String> {
     let turned = |body: &&Body| {
         let rotation = body.driven().map(|race| &race.rotation);
@@ -160,12 +158,12 @@ fn by_torque(assembly: &Assembly) -> Option<String> {
     };
     let body = assembly.bodies.iter().find(turned)?;
     Some(format!(
-        "a torque turns {}, so that its speed is not known; write speed = \"... rpm\" instead of the torque",
+        "{} is driven by a torque, so that its speed is not known; write speed = \"... rpm\" instead of the torque",
         body.name
     ))
 }
 
-/// Whirl, where a body that moves spins.
+/// Whirl model; `None` if no moving body spins.
 fn spinning(
     assembly: &Assembly,
     still: &StaticAssembly,
@@ -179,7 +177,7 @@ fn spinning(
     whirling(assembly, still, solution, bodies, masses).map(Some)
 }
 
-/// Modes above the kept ones of the shaft with the fewest of them.
+/// Warning about modes above the kept modes of a shaft, the one with the lowest limit.
 fn beyond_modes(assembly: &Assembly, above: impl Fn(f64) -> usize) -> Option<Warning> {
     let limits = assembly.shafts.iter().map(|shaft| (shaft.shapes.cut.above / TAU, shaft.body));
     let (limit, body) = limits.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -194,7 +192,8 @@ fn beyond_modes(assembly: &Assembly, above: impl Fn(f64) -> usize) -> Option<War
     })
 }
 
-/// Modes near or above the first natural mode (Hz) that a housing leaves out: below eight tenths of it frequencies are off by less than 1 %.
+/// Warning about modes near or above the first natural mode (Hz) that a housing leaves out. Below 0.8 of it the error is
+/// less than 1 %.
 fn beyond_natural(first_left_out: f64, above: impl Fn(f64) -> usize) -> Option<Warning> {
     let limit = 0.8 * first_left_out;
     let beyond = above(limit);
@@ -208,8 +207,7 @@ fn beyond_natural(first_left_out: f64, above: impl Fn(f64) -> usize) -> Option<W
     })
 }
 
-/// The bodies that loads move.
-fn taking_part(assembly: &Assembly, still: &StaticAssembly) -> Vec<MovingBody> {
+fn moving_bodies(assembly: &Assembly, still: &StaticAssembly) -> Vec<MovingBody> {
     let of = |(index, (still, body)): (usize, (&StaticBody, &Body))| {
         let Place::Loaded(loaded) = &still.place else { return None };
         let free = [0, 1, 2, 3, 4].map(|i| loaded.given(i).is_none());

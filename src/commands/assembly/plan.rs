@@ -1,5 +1,4 @@
-//! `bearing plan` of bearings and what they sit on and in: what the scene's way of solving does, and what another one
-//! of the housings would cost.
+//! `bearing plan` of a scene of bearings: stages of its solution method, and the cost of another method for the housings.
 
 use super::housing::Housing;
 use super::lists::Lists;
@@ -61,7 +60,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     };
     notes.extend(warnings::of_bushings(scene).iter().map(ToString::to_string));
     for housing in &housings {
-        notes.extend(housing.notes().iter().map(|said| note("housing mesh", said)));
+        notes.extend(housing.notes().iter().map(|text| note("housing mesh", text)));
     }
     if let Some(shapes) = &reduced {
         notes.extend(shapes.notes(scene, &housings));
@@ -73,25 +72,25 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     if !housings.is_empty() {
         notes.extend(condensing_notes(lists, &housings));
     }
-    // With bushings or shafts in elements the steps of all have been told.
+    // `of_steps` reports the steps of scenes with bushings or shafts in elements.
     let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
-    let told = housings.is_empty() || in_elements;
-    if let (Some(settings), false) = (scene.run(), told) {
+    let has_step_note = housings.is_empty() || in_elements;
+    if let (Some(settings), false) = (scene.run(), has_step_note) {
         notes.push(explicit_note(lists, &housings, settings));
     }
     if scene.common().rigid_housing {
-        let said = "housing.method = rigid: the outer race is fixed, no mesh is read";
-        notes.push(note("housing", said));
+        let text = "housing.method = rigid: the outer race is fixed, no mesh is read";
+        notes.push(note("housing", text));
     }
     say_plan(&items, &notes)?;
     Ok(Outcome::Done)
 }
 
-/// Where explicit steps start that are not told to start in equilibrium.
-const UNDEFORMED: &str = "undeformed, the outer race in its first place: what the bearing carries from the start \
-    swings in";
+/// Start of explicit steps that do not start in equilibrium.
+const UNDEFORMED: &str =
+    "undeformed, the outer race in its initial position: initial loads cause oscillations";
 
-/// A run in steps: items, and what there is to note of steps and of the size of its table.
+/// Items of a run in time steps, and notes on its steps and the size of its table.
 fn of_steps(
     lists: &Lists,
     housings: &[Housing],
@@ -107,7 +106,7 @@ fn of_steps(
     let shafts = take_shafts(scene, &mut assembly)?;
     let elements = (&bushings[..], &shafts[..]);
     let in_elements = !(bushings.is_empty() && shafts.is_empty());
-    // Races without their housings or bushings would have nothing to hold them.
+    // Races without their housings or bushings would have no support.
     let alone = !in_elements && (housings.is_empty() || reduced.is_some());
     let (request, choice) = if in_elements {
         (run::request(scene.common(), settings), None)
@@ -124,7 +123,7 @@ fn of_steps(
         notes.push(note("step", &windows_text(scene, parts, settings)?));
     }
     for shaft in &shafts {
-        notes.extend(imbalance_text(scene, shaft).map(|said| note("shaft", &said)));
+        notes.extend(imbalance_text(scene, shaft).map(|text| note("shaft", &text)));
     }
     notes.push(size_line(&assembly, &request));
     let of_shafts = shafts.iter().map(|shaft| file_bytes(&shaft.mesh, false));
@@ -133,21 +132,20 @@ fn of_steps(
     Ok((items, notes))
 }
 
-/// Bytes of one file of the fields of each housing.
+/// Size of one fields file of each housing, bytes.
 pub fn of_housings(housings: &[Housing]) -> Vec<f64> {
     housings.iter().map(|housing| file_bytes(&housing.built.mesh, true)).collect()
 }
 
-/// How many files of fields there will be and how large they are, where there are some on the way.
 fn fields_line(run: &RunSettings, solids: &[f64]) -> Option<String> {
     let size = fields_size(run.end, run.output_interval, run.fields_interval, solids);
     size.interval.filter(|_| !solids.is_empty()).map(|_| note("fields", &size.to_string()))
 }
 
-/// Of the mass times length of a shaft (couples: its square): what is less out of balance is so by rounding.
+/// Unbalance that counts as rounding error, as a part of mass times length of a shaft (couples: length squared).
 const ROUNDING: f64 = 1e-12;
 
-/// How far the mesh of a shaft is out of balance, if it is.
+/// Unbalance of the mesh of a shaft; `None` if it is balanced.
 fn imbalance_text(scene: &AssemblyScene, shaft: &ShaftElements) -> Option<String> {
     let length = scene.bodies[shaft.body].beam.as_ref()?.beam.length();
     let mass: f64 = shaft.part.model.mass.iter().sum();
@@ -160,17 +158,15 @@ fn imbalance_text(scene: &AssemblyScene, shaft: &ShaftElements) -> Option<String
     let all: Vec<String> = [balance, couple].into_iter().flatten().collect();
     (!all.is_empty()).then(|| {
         format!(
-            "the cells of {} are not alike all around: their masses are out of balance by {}, which turns with the shaft",
+            "the mesh of {} is not axisymmetric: it has an unbalance of {}, which turns with the shaft",
             shaft.name,
             all.join(" and ")
         )
     })
 }
 
-/// Bushings and shafts in elements.
 pub type Elements<'e> = (&'e [BushingElements], &'e [ShaftElements]);
 
-/// Items of a run in steps.
 pub fn stages(
     scene: &AssemblyScene,
     (housings, (bushings, shafts)): (&[Housing], Elements),
@@ -186,14 +182,14 @@ pub fn stages(
     let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
     let mut options = request.options;
     if !(housings.is_empty() && bushings.is_empty() && shafts.is_empty()) {
-        // Bearings roll in equilibrium with races that are held where they sit in their housings.
+        // Balls start in equilibrium with races fixed in their housings.
         options.start = Start::Equilibrium;
     }
     let is_explicit = scene.housing_method() == Some(HousingMethod::Explicit);
-    let way = if is_explicit { Method::Explicit } else { Method::Reduced };
+    let method = if is_explicit { Method::Explicit } else { Method::Reduced };
     let mut solids = Vec::new();
     for (index, housing) in housings.iter().enumerate() {
-        solids.extend(housing.items(index, &way));
+        solids.extend(housing.items(index, &method));
         if is_explicit {
             let body = assembly.bearings[housing.bearing].mounts[1].body;
             let seat = (body, housing.name.as_deref());
@@ -219,17 +215,17 @@ pub fn stages(
     for shaft in shafts {
         let of_body = |item: &&mut Item| item.subject == Subject::Body(shaft.body);
         for item in items.iter_mut().filter(of_body).filter(|item| item.stage == Stage::Motion) {
-            item.why = "its elements move, and what sits on them; it has no body of its own".into();
+            item.why =
+                "moves by its elements and what is mounted on them; it is not a rigid body".into();
         }
     }
     if let Some(choice) = choice {
-        let said = format!("{}: {}", choice.integrator.name(), choice.reason);
-        items.push(Item::does(Stage::IntegratorChoice, Subject::Whole, said));
+        let text = format!("{}: {}", choice.integrator.name(), choice.reason);
+        items.push(Item::does(Stage::IntegratorChoice, Subject::Whole, text));
     }
     items
 }
 
-/// Items of the equilibrium at t = 0.
 pub fn of_statics(lists: &Lists, housings: &[Housing]) -> Fallible<Vec<Item>> {
     Ok(of_equilibrium(&still(lists)?, housings, ASKED_FOR))
 }
@@ -245,18 +241,17 @@ fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &st
     statics::items(still, solids, centrifugal)
 }
 
-/// Items of one equilibrium after the other, of which there are as many as a run solves.
 pub fn of_course(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fallible<Vec<Item>> {
-    const GO_ROUND: &str =
-        "in `run`, as the cage goes round; `statics` leaves it out, it is not asked for";
+    const CAGE_ROTATES: &str =
+        "in `run`, because the cage rotates; `statics` leaves it out, it is not requested";
     let mut still = still(lists)?;
     for (bearing, placed) in still.bearings.iter_mut().zip(&lists.scene.bearings) {
         let turning = &placed.scene.dynamics.inner.rotation;
         let turns = matches!(turning, Rotation::Speed(speed) if !speed.is_zero());
-        // At any speed that it has.
+        // Non-zero if the bearing turns, whatever its speed.
         bearing.centrifugal = f64::from(u8::from(turns));
     }
-    let mut items = of_equilibrium(&still, housings, GO_ROUND);
+    let mut items = of_equilibrium(&still, housings, CAGE_ROTATES);
     let count = whole_number(run.end, run.output_interval) + 1;
     let last = rounded((count - 1) as f64 * run.output_interval);
     let why = format!("{count} equilibria to t = {last} s, one a row");
@@ -264,7 +259,7 @@ pub fn of_course(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fall
     Ok(items)
 }
 
-/// One bearing under all loads that it has at t = 0.
+/// Static problem of a single bearing under its loads at t = 0.
 pub fn of_one(one: &PlacedBearing, still: &StaticAssembly) -> Fallible<StaticProblem> {
     let problem = static_problem(&one.scene)?;
     Ok(match &still.bodies[0].place {
@@ -273,16 +268,15 @@ pub fn of_one(one: &PlacedBearing, still: &StaticAssembly) -> Fallible<StaticPro
     })
 }
 
-/// How much the run is going to write.
 fn size_line(assembly: &Assembly, request: &RunRequest) -> String {
-    let said = match table_size(assembly.clone(), request) {
+    let text = match table_size(assembly.clone(), request) {
         Ok(size) => size.to_string(),
         Err(error) => refused(&error),
     };
-    note("table", &said)
+    note("table", &text)
 }
 
-/// What condensing takes. Nothing is factorised here.
+/// Sizes and memory of condensing. Nothing is factorised here.
 fn condensing_notes(lists: &Lists, housings: &[Housing]) -> Vec<String> {
     let chosen = lists.scene.housing_method() == Some(HousingMethod::QuasiStatic);
     let name = if chosen { "quasi-static" } else { "quasi-static instead" };
@@ -302,20 +296,19 @@ fn condensing_notes(lists: &Lists, housings: &[Housing]) -> Vec<String> {
 
 fn condensed_text(sizes: &Sizes) -> String {
     format!(
-        "{} unknowns onto {} of {} bore nodes; {} beside the race and {} out of reach are left \
-         out",
+        "{} unknowns onto {} of {} bore nodes; left out are {} not under the race and {} too far \
+         from it",
         sizes.unknowns, sizes.kept, sizes.bore, sizes.beside, sizes.out_of_reach
     )
 }
 
-/// Windows of the explicit method.
 fn explicit_note(lists: &Lists, housings: &[Housing], run: &RunSettings) -> String {
     let chosen = lists.scene.housing_method() == Some(HousingMethod::Explicit);
-    // Where it starts does not matter here, and finding out takes long.
-    let windows = housings::undeformed(lists, housings, 1);
-    match (windows.and_then(|parts| windows_text(lists.scene, parts, run)), chosen) {
-        (Ok(said), true) => note("step", &said),
-        (Ok(said), false) => note("explicit instead", &said),
+    // The start does not matter here, and finding an equilibrium takes long.
+    let parts = housings::undeformed(lists, housings, 1);
+    match (parts.and_then(|parts| windows_text(lists.scene, parts, run)), chosen) {
+        (Ok(text), true) => note("step", &text),
+        (Ok(text), false) => note("explicit instead", &text),
         (Err(error), true) => note("step", &refused(&*error)),
         (Err(error), false) => note("explicit instead", &format!("not possible: {error}")),
     }

@@ -1,4 +1,4 @@
-//! Housings reduced to some shapes, and the assembly that they are part of.
+//! Housings reduced to modes, and the assembly with them.
 
 use super::Fallible;
 use super::housing::Housing;
@@ -25,66 +25,65 @@ use bearing_dynamics::solids::reduction::{CutOff, LEFT_OUT, ReduceOptions, Reduc
 use std::error::Error;
 use std::time::Instant;
 
-/// Housings as shapes, and the assembly with them.
 pub struct Shapes {
     pub assembly: Assembly,
-    /// What the shapes of each housing are made for, and force (N) and moment (N m) on its race at the start.
+    /// Loads that the static correction modes of each housing cover, and force (N) and moment (N m) on its race at the start.
     pub presses: Vec<(LargestLoads<'static>, [f64; 2])>,
     /// One for each housing.
     pub reductions: Vec<Reduction>,
-    /// Wall time that condensing, and finding shapes and start took, s.
+    /// Wall times of condensing, and of finding modes and start, s.
     pub seconds: [f64; 2],
-    /// How often each stage of condensing ran, one for each housing.
+    /// Counts of the stages of condensing, one for each housing.
     pub ran: Vec<Counts>,
 }
 
-/// A press by so much more than shapes are made for is told of: patches of contact grow by less than it does.
+/// Ratio of a load to the covered one above which a warning is printed. Contact areas grow less than loads.
 const BEYOND: f64 = 1.25;
 
-/// Frequencies of the housing that are kept, over that of a ball between its races.
+/// Ratio of the highest kept frequency of a housing to that of a ball between its races.
 const BEYOND_BALLS: f64 = 2.0;
 
-/// Modes whose memory is counted: a block of steel has some dozens up to the frequency of a ball.
+/// Modes in the estimate of memory: a block of steel has some dozens up to the frequency of a ball.
 const COUNTED: usize = 40;
 
-/// Reduces a housing for a bearing whose balls are under `struck` (N).
+/// Reduces a housing for a bearing whose balls are loaded by `impact` (N).
 fn reduction(
     housing: &Housing,
     bore: &CondensedBore,
-    (bearing, struck): (&Bearing, f64),
-    hardest: &LargestLoads,
+    (bearing, impact): (&Bearing, f64),
+    covered: &LargestLoads,
 ) -> Fallible<Reduction> {
     let settings = &housing.scene.housing;
     let fit = housing.setup.fit(&housing.scene);
-    let loads = pressed(bore, settings.penalty, &fit, hardest)?;
-    let by_default = || BEYOND_BALLS * ball_frequency(bearing, struck);
+    let loads = pressed(bore, settings.penalty, &fit, covered)?;
+    let by_default = || BEYOND_BALLS * ball_frequency(bearing, impact);
     let modes_to = settings.modes_to.unwrap_or_else(by_default);
     let options = ReduceOptions { modes_to, left_out: LEFT_OUT };
     let what = format!(
-        "{}natural shapes of the housing up to {} Hz (housing.modes_to)",
+        "{}natural modes of the housing up to {} Hz (housing.modes_to)",
         housing.before(),
         to_digits(modes_to, 4)
     );
-    // Their number is not known before.
+    // The number of modes is not known yet.
     let needed = memory::modes_of_fixed(bore.unknowns(), COUNTED);
     refuse_beyond(&needed, ", a quasi-static housing (method = \"quasi-static\" in [housing])")?;
     let work = || reduce(&housing.setup.model, bore, settings.penalty, &loads, &options);
     Ok(spun(what, work)?)
 }
 
-/// Condenses and reduces the housings, and finds the equilibrium that a run starts from.
+/// Condenses and reduces the housings, and finds the equilibrium at the start of a run.
 pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let (scene, mut assembly) = (lists.scene, lists.assembly()?.clone());
     let largest = Largest::of(&assembly, housings);
-    // A bearing may be loaded by its places alone.
-    let [struck, force] = [largest.on_bodies, largest.in_all].map(|force| force.max(1.0));
-    let hardest = LargestLoads { force, moment: largest.moments, start: None };
+    // A bearing may be loaded by prescribed displacements alone.
+    let [impact, force] = [largest.on_bodies, largest.in_all].map(|force| force.max(1.0));
+    let covered = LargestLoads { force, moment: largest.moments, start: None };
     let start = Instant::now();
     let mut bores: Vec<CondensedBore> = condensed(housings)?;
     let condensing = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let settles = scene.run().is_none_or(|run| run.options.start != Start::Nominal);
-    let settled = match settles {
+    let from_equilibrium = scene.run().is_none_or(|run| run.options.start != Start::Nominal);
+    let at_rest = match from_equilibrium {
         true => {
             let found = at_start(&assembly, &seats(housings, &bores));
             Some(found.map_err(|error| slides(housings, error))?)
@@ -94,13 +93,13 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let (mut reductions, mut presses) = (Vec::new(), Vec::new());
     for (index, (housing, bore)) in housings.iter().zip(&bores).enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
-        let start: Option<&BoreState> = settled.as_ref().map(|settled| &settled.seats[index]);
-        let force = housing.scene.housing.press.unwrap_or(hardest.force);
-        let hardest = LargestLoads { force, ..hardest };
+        let start: Option<&BoreState> = at_rest.as_ref().map(|at_rest| &at_rest.seats[index]);
+        let force = housing.scene.housing.press.unwrap_or(covered.force);
+        let covered = LargestLoads { force, ..covered };
         let reduction =
-            reduction(housing, bore, (bearing, struck), &LargestLoads { start, ..hardest })?;
+            reduction(housing, bore, (bearing, impact), &LargestLoads { start, ..covered })?;
         let [y, z, about_y, about_z] = start.map_or([0.0; 4], |start| start.load);
-        presses.push((hardest, [y.hypot(z), about_y.hypot(about_z)]));
+        presses.push((covered, [y.hypot(z), about_y.hypot(about_z)]));
         let body = bearing.mounts[1].body;
         let radius = housing.setup.radius(&housing.scene);
         let penalty = housing.scene.housing.penalty;
@@ -111,7 +110,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
         }
         reductions.push(reduction);
     }
-    if settles {
+    if from_equilibrium {
         let of = |((housing, reduction), bore): ((&Housing, _), _)| {
             let radius = housing.setup.radius(&housing.scene).value(0.0);
             let fit = Fit { radius, ..housing.setup.fit(&housing.scene) };
@@ -128,60 +127,58 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     Ok(Shapes { presses, assembly, reductions, seconds, ran })
 }
 
-/// What keeps a run from starting in equilibrium, where an outer race can slide.
+/// Adds a hint to the error of a start in equilibrium, if an outer race can slide.
 fn slides(housings: &[Housing], error: Box<dyn Error>) -> Box<dyn Error> {
     match housings.iter().any(|housing| housing.scene.housing.axial == Axial::Free) {
         false => error,
         true => format!(
-            "{error}. Hint: nothing takes a force along the axis on outer races with axial = \"free\", and balls at an angle push them: to let them \
-             slide write start = \"nominal\" in [numerics], or hold one (axial = \"held\" in [housing.NAME])"
+            "{error}. Hint: outer races with axial = \"free\" have no axial support, and balls at a contact angle load them axially: to let \
+             them slide write start = \"nominal\" in [numerics], or fix one (axial = \"held\" in [housing.NAME])"
         )
         .into(),
     }
 }
 
 impl Shapes {
-    /// Displacements (m) and velocities (m/s) of all nodes of a housing now.
+    /// Present displacements (m) and velocities (m/s) of all nodes of a housing.
     pub fn fields(&self, motion: &Motion, index: usize) -> Option<[Vec<Vec3>; 2]> {
         let Motion::Bearing(simulation) = motion else { return None };
-        let (gone, speeds) = simulation.system.shapes_of(&simulation.state, index);
-        Some([gone, speeds].map(|of| self.reductions[index].displacement(of)))
+        let (amplitudes, rates) = simulation.system.shapes_of(&simulation.state, index);
+        Some([amplitudes, rates].map(|of| self.reductions[index].displacement(of)))
     }
 
-    /// The presses that shapes of a housing are made for.
     fn made_for(&self, index: usize) -> String {
-        let (hardest, [force, _]) = self.presses[index];
-        let mut said = format!("presses of {} N", to_digits(hardest.force, 4));
-        if hardest.moment > 0.0 {
-            said += &format!(" or {} N m", to_digits(hardest.moment, 4));
+        let (covered, [force, _]) = self.presses[index];
+        let mut text = format!("loads of {} N", to_digits(covered.force, 4));
+        if covered.moment > 0.0 {
+            text += &format!(" or {} N m", to_digits(covered.moment, 4));
         }
-        if force > hardest.force {
-            said += &format!(" and the start's {} N", to_digits(force, 4));
+        if force > covered.force {
+            text += &format!(" and {} N at the start", to_digits(force, 4));
         }
-        said
+        text
     }
 
-    /// A race that was pressed (N) or turned (N m) beyond what the shapes of its housing are made for.
+    /// Warning about a force (N) or moment (N m) on a race beyond the loads that the modes of its housing cover.
     pub fn beyond(&self, housings: &[Housing], index: usize, found: [f64; 2]) -> Option<Warning> {
-        let (hardest, start) = self.presses[index];
+        let (covered, start) = self.presses[index];
         let housing = &housings[index];
-        let force = hardest.force.max(start[0]);
-        // Levers of a width are among the samples.
-        let moment = (housing.setup.width * hardest.force).max(hardest.moment).max(start[1]);
+        let force = covered.force.max(start[0]);
+        // The covered loads act with levers of up to a width.
+        let moment = (housing.setup.width * covered.force).max(covered.moment).max(start[1]);
         if found[0] <= BEYOND * force && found[1] <= BEYOND * moment {
             return None;
         }
         let needed = found[0].max(found[1] / housing.setup.width);
         let [force, moment, needed] = [found[0], found[1], needed].map(|of| to_digits(of, 4));
         let text = format!(
-            "the load on the bore reaches {force} N and {moment} N m, beyond what its static correction modes are made for ({}): write press = \
+            "the load on the bore reaches {force} N and {moment} N m, beyond what its static correction modes cover ({}): write press = \
              \"{needed} N\", or more, in [housing]",
             self.made_for(index)
         );
         Some(Warning::new(WarningCode::BeyondKeptModes, text).named(&housing.before()))
     }
 
-    /// Unknowns, shapes and frequencies of each housing, a line each.
     pub fn text(&self, housings: &[Housing]) -> String {
         let of = |(housing, reduction): (&Housing, &Reduction)| {
             format!("{}{}\n", housing.before(), text(&reduction.cut_off))
@@ -189,32 +186,31 @@ impl Shapes {
         housings.iter().zip(&self.reductions).map(of).collect()
     }
 
-    /// What there is to note of each housing in a plan.
     pub fn notes(&self, scene: &AssemblyScene, housings: &[Housing]) -> Vec<String> {
-        let mut said = Vec::new();
+        let mut notes = Vec::new();
         for (index, (housing, reduction)) in housings.iter().zip(&self.reductions).enumerate() {
             let (of, cut) = (housing.before(), &reduction.cut_off);
-            said.push(note("shapes of the housing", &format!("{of}{}", text(cut))));
-            said.push(note(
+            notes.push(note("modes of the housing", &format!("{of}{}", text(cut))));
+            notes.push(note(
                 "cut off",
                 &format!("{of}{}", cut_off(scene, &self.made_for(index), cut)),
             ));
         }
-        said.push(note("masses of the housing", "lumped, as of explicit steps"));
-        said
+        notes.push(note("masses of the housing", "lumped, as in explicit steps"));
+        notes
     }
 }
 
 fn text(cut: &CutOff) -> String {
     format!(
-        "{} natural shapes up to {} Hz and {} static answers to pressure on the bore's {} nodes{}; frequencies from {} to {} Hz",
+        "{} natural modes up to {} Hz and {} static correction modes for pressure on the bore's {} nodes{}; frequencies from {} to {} Hz",
         cut.natural,
         to_digits(cut.modes_to, 4),
         cut.patterns,
         cut.nodes,
         match cut.own {
             0 => String::new(),
-            own => format!(" and {own} to weight and loads"),
+            own => format!(" and {own} for weight and loads"),
         },
         to_digits(cut.lowest, 4),
         to_digits(cut.highest, 4)
@@ -224,29 +220,28 @@ fn text(cut: &CutOff) -> String {
 fn cut_off(scene: &AssemblyScene, made_for: &str, cut: &CutOff) -> String {
     let driven = |of: &Excitation| {
         let error = cut.dynamic_error(of.frequency);
-        format!("{} of what goes with {}", percent(error), of.what)
+        format!("{} of the response to {}", percent(error), of.what)
     };
-    // Below that rounding is told.
     let left_out = match cut.static_left_out {
         part if part < 1e-9 => "nothing".into(),
         part => percent(part),
     };
-    let mut said = format!(
-        "of the compliance under {}, looked at all round, {} has no shape; the lowest natural shape left out swings at {} Hz",
+    let mut text = format!(
+        "of the compliance under {} in all directions, {} is left out; the lowest natural mode left out is at {} Hz",
         made_for,
         left_out,
         to_digits(cut.first_left_out, 4)
     );
     let errors: Vec<String> = excitations(scene).iter().map(driven).collect();
     if !errors.is_empty() {
-        said += &format!(", which changes at most {}", errors.join(", "));
+        text += &format!(", which changes at most {}", errors.join(", "));
     }
-    said
+    text
 }
 
 fn percent(part: f64) -> String {
     match part {
-        part if part > 1.0 => "more than the whole".into(),
+        part if part > 1.0 => "more than 100 %".into(),
         part => format!("{} %", to_digits(100.0 * part, 2)),
     }
 }

@@ -1,4 +1,4 @@
-//! `bearing statics` of bearings and what they sit on and in: one equilibrium of all at t = 0.
+//! `bearing statics` of a scene of bearings: equilibrium at t = 0.
 
 use super::housing::Housing;
 use super::housings::{self, Equilibrium};
@@ -35,17 +35,16 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-const ONE_BEARING: &str = "note: moment-tilt and polar are drawn of a single bearing with a fixed outer race only; `bearing sweep` gives loads over positions\n";
+const ONE_BEARING: &str = "note: moment-tilt and polar are drawn only for a single bearing with a fixed outer race; `bearing sweep` gives loads over positions\n";
 
 /// An equilibrium and everything its results folder records.
 pub struct Found<'s> {
     scene: &'s AssemblyScene,
-    /// Of the bearings.
     names: Vec<&'s str>,
     assembly: StaticAssembly<'static>,
-    /// Of several as people read it.
+    /// Equilibrium; with several bearings in the coordinates of the output.
     moment: EquilibriumAt,
-    /// The same as that of a bearing by itself, where there is only one.
+    /// The same as the problem and solution of a single bearing; `None` with several.
     of_one: Option<(StaticProblem, StaticSolution)>,
     warnings: Vec<Warning>,
     inertia: Option<FrequencyRatio>,
@@ -69,7 +68,7 @@ pub fn find_equilibrium<'s>(
     let found = housings::equilibrium(&lists, housings::grown(&housings, &bores), None)?;
     let Equilibrium { still, moment, in_bores } = &found;
     let inertia = match in_bores {
-        Some((course, search)) => FrequencyRatio::of(scene, course, &housings, search, moment)?,
+        Some((problem, search)) => FrequencyRatio::of(scene, problem, &housings, search, moment)?,
         None => None,
     };
     let mut seconds = vec![("read".into(), read), ("solve".into(), start.elapsed().as_secs_f64())];
@@ -110,9 +109,9 @@ pub fn find_equilibrium<'s>(
     for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&moment.solution.seats) {
         let own = Settled::new(housing, bore, state);
         let model = &own.housing.setup.model;
-        let mut said = of_solid::of_equilibrium(model, &own.displacement, &own.stress);
-        said.extend(of_solid::of_contact_nodes(state));
-        warnings.extend(said.into_iter().map(|of| of.named(&own.housing.before())));
+        let mut of_housing = of_solid::of_equilibrium(model, &own.displacement, &own.stress);
+        of_housing.extend(of_solid::of_contact_nodes(state));
+        warnings.extend(of_housing.into_iter().map(|of| of.named(&own.housing.before())));
         own.record(bore, moment, &mut record)?;
         settled.push(own);
     }
@@ -125,13 +124,12 @@ pub fn find_equilibrium<'s>(
         moment.solution = readable(lists.assembly()?, &still, &moment.solution);
     }
     let StaticAssembly { bodies, bearings, connections, shafts, .. } = still;
-    // Bores are needed no longer.
     let assembly = StaticAssembly { bodies, bearings, connections, shafts, seats: Vec::new() };
     let names = scene.bearings.iter().map(name_of).collect();
     Ok(Found { scene, names, assembly, moment, of_one, warnings, inertia, settled, record })
 }
 
-/// What there is of each bearing under its name; that of the only one by itself.
+/// Section of each bearing under its name; that of a single one without a name.
 fn by_name(
     scene: &AssemblyScene,
     each: impl Iterator<Item = Result<Value, ResultsError>>,
@@ -147,7 +145,6 @@ fn by_name(
 }
 
 impl Found<'_> {
-    /// As a person reads it.
     fn text(&self) -> String {
         let of_housings: String = self.settled.iter().map(Settled::text).collect();
         let solution = &self.moment.solution;
@@ -171,7 +168,7 @@ impl Found<'_> {
         if !self.settled.is_empty() {
             let EquilibriumAt { contact_changes, residual, .. } = self.moment;
             text += &format!(
-                "{} iterations, {contact_changes} changes of contact, unbalanced part of the load {residual:.1e}\n",
+                "{} iterations, {contact_changes} changes of contact, relative residual {residual:.1e}\n",
                 solution.iterations
             );
         }
@@ -186,12 +183,11 @@ impl Found<'_> {
         text
     }
 
-    /// Plots of the bearings.
     fn draw(&self, folder: &Path) -> Fallible<Vec<PathBuf>> {
         let common = self.scene.common();
         if let Some((problem, solution)) = &self.of_one {
             let mut drawn = common.clone();
-            // The other plots move the bearing on, which would move the outer race.
+            // The other plots move the balls, and with them the outer race.
             drawn.plots.retain(|plot| self.settled.is_empty() || *plot == Plot::LoadZone);
             return pictures::write(folder, &drawn, problem, solution);
         }
@@ -225,7 +221,6 @@ impl Found<'_> {
     }
 }
 
-/// A housing in equilibrium.
 struct Settled {
     housing: Housing,
     seat: SeatRow,
@@ -233,7 +228,7 @@ struct Settled {
     displacement: Vec<Vec3>,
     stress: Stresses,
     state: BoreState,
-    /// Of the race in the world, m and rad.
+    /// Position of the race in the global frame, m and rad.
     place: [f64; 5],
 }
 
@@ -252,7 +247,7 @@ impl Settled {
         }
     }
 
-    /// Its sections: of the only one beside those of the bearing, of several under their names.
+    /// Adds its sections to the record: a single housing's at the top level, others under their names.
     fn record(
         &self,
         bore: &CondensedBore,
@@ -281,12 +276,11 @@ impl Settled {
         Ok(())
     }
 
-    /// The outer race in its bore, as a person reads it.
     fn text(&self) -> String {
         let Settled { housing, seat, place, state, .. } = self;
         let von_mises = self.stress.cell_von_mises.iter().copied().fold(0.0, f64::max);
         let of = housing.before();
-        let mut text = format!("\n{of}outer race      displacement, tilt      of the housing\n");
+        let mut text = format!("\n{of}outer race      displacement, tilt      housing load\n");
         let loads = [seat.force[1], seat.force[2], seat.moment[1], seat.moment[2]];
         for (i, name) in POSE_NAMES.iter().enumerate() {
             let (value, unit, load_unit) = if i < 2 {
@@ -301,7 +295,7 @@ impl Settled {
         let _ = writeln!(
             text,
             "housing stiffness {:.4} N/um along y, {:.4} N/um along z\n\
-             {} of {} bore nodes touch, penetration up to {:.6} um, pressure up to {:.4} MPa, von Mises \
+             {} of {} bore nodes in contact, penetration up to {:.6} um, pressure up to {:.4} MPa, von Mises \
              stress up to {:.4} MPa\n\
              this pressure is {PEAK_PRESSURE}",
             stiffness(0),
@@ -315,7 +309,7 @@ impl Settled {
         text
     }
 
-    /// Fields and the table of the bore's nodes; the files written.
+    /// Writes fields and the table of bore nodes; returns the files.
     fn write(&self, folder: &Path) -> Fallible<Vec<PathBuf>> {
         let fields = folder.join(self.fields_file());
         let mesh = &self.housing.built.mesh;
@@ -330,11 +324,11 @@ impl Settled {
     }
 }
 
-/// Finds the equilibrium, says it, and writes it to a folder unless it is only to be said.
+/// Finds the equilibrium, prints it, and writes it to a folder unless `--dry` is given.
 pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
     let folder = asked.folder(Writes::Statics)?;
     let found = find_equilibrium(asked.document, scene, read)?;
-    // Nothing computed is lost if a file cannot be written.
+    // Printed first, so that an error in a file loses no result.
     say(&found.text())?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;

@@ -1,4 +1,4 @@
-//! What `bearing modes` says of bodies that spin: whirl at the scene's speed, critical speeds, a Campbell diagram.
+//! Spinning bodies in `bearing modes`: whirl at the scene's speed, critical speeds, Campbell diagram.
 
 use super::Fallible;
 use bearing_dynamics::output::atomic::write_atomic;
@@ -15,25 +15,23 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Speeds of the diagram, from rest on.
+/// Number of speeds of the diagram, from zero.
 const SPEEDS: usize = 51;
-/// Times the scene's speed up to which motions are in the diagram; the two lowest always are.
+/// Ratio to the scene's speed up to which modes are in the diagram; the two lowest always are.
 const FAR: f64 = 3.0;
-/// Motions that are followed.
+/// Number of modes that are followed.
 const LINES: usize = 8;
-/// Part of a motion's inertia across the axis from which on it is told; what has less swings along the axis, which no unbalance
-/// excites.
+/// Smallest radial part of a mode's inertia for which it is reported. Unbalance does not excite axial modes.
 const ACROSS: f64 = 0.01;
 
-/// Motions of what spins.
 pub struct Spinning {
     pub whirling: SmallMotionModel,
-    /// At the scene's speed.
+    /// Whirl modes at the scene's speed.
     whirls: Vec<Whirl>,
-    /// Up to twice that speed, or why there are none.
+    /// Critical speeds up to twice the scene's speed, or the reason for none.
     critical: Result<Vec<Critical>, RotorError>,
     campbell: Campbell,
-    /// Whether housings swing along.
+    /// True if flexible housings take part.
     housed: bool,
 }
 
@@ -57,7 +55,7 @@ impl Spinning {
         let critical = whirling.critical_speeds(2.0 * top.abs());
         let critical = critical.map(|all| all.into_iter().filter(within).collect());
         let mut campbell = model.campbell(&speeds, LINES)?;
-        // Where a motion along the axis crosses one across it, the two are one for a while.
+        // An axial and a radial mode are coupled near their crossing.
         let across = |line: &Vec<Whirl>| line.iter().filter(|whirl| is_whirl(whirl)).count();
         campbell.lines.retain(|line| 2 * across(line) > line.len());
         let first = campbell.lines.len().min(2);
@@ -68,7 +66,7 @@ impl Spinning {
         Ok(Spinning { whirls, critical, campbell, whirling, housed })
     }
 
-    /// After what a line says, where that is not plain whirl.
+    /// Suffix of a line for a mode that is not purely radial.
     fn kind(&self, whirl: &Whirl) -> &'static str {
         match whirl.across < 0.5 {
             true if self.housed => ", mostly along the axis or of a housing",
@@ -77,7 +75,7 @@ impl Spinning {
         }
     }
 
-    /// The place that a motion moves most.
+    /// Name of the place with the largest displacement of a mode.
     fn most<'s>(&'s self, whirl: &Whirl) -> &'s str {
         let size = |place: &usize| {
             let [y, z, ..] = whirl.shape[*place];
@@ -92,7 +90,7 @@ impl Spinning {
     pub fn text(&self) -> String {
         let of = self.whirling.fastest.as_deref();
         let of = of
-            .map_or(String::new(), |body| format!(" of {body}, the others at a fixed part of it"));
+            .map_or(String::new(), |body| format!(" of {body}, the others at a fixed ratio to it"));
         let mut text = format!(
             "\nwhirl at {:.1} rpm{of}\nmode        frequency, Hz  damping ratio  direction  moves most\n",
             rpm(self.whirling.top_speed)
@@ -109,10 +107,10 @@ impl Spinning {
                 self.kind(whirl)
             );
         }
-        let _ = writeln!(text, "\ncritical speeds up to twice that, without damping");
+        let _ = writeln!(text, "\ncritical speeds up to twice this speed, without damping");
         match &self.critical {
             Err(why) => {
-                let _ = writeln!(text, "not told: {why}");
+                let _ = writeln!(text, "not computed: {why}");
             }
             Ok(none) if none.is_empty() => text.push_str("none\n"),
             Ok(all) => all.iter().for_each(|of| {
@@ -129,10 +127,9 @@ impl Spinning {
         text
     }
 
-    /// A rotor that nothing holds, and whirl that grows.
     pub fn warnings(&self) -> Vec<Warning> {
         let loose = self.whirling.model.is_loose().then(|| {
-            let text = "no bearing load and no spring holds what spins across its axis, so that whirl and critical speeds are those of a free rotor: give it \
+            let text = "the rotor has no radial support by a bearing load or a spring, so that whirl and critical speeds are those of a free rotor: add \
                         gravity, a load or preload";
             Warning::new(WarningCode::IndeterminatePosition, text)
         });
@@ -180,7 +177,6 @@ impl Spinning {
         section
     }
 
-    /// The diagram as picture and as table.
     pub fn write(&self, folder: &Path, title: &str) -> Fallible<[PathBuf; 2]> {
         let picture = folder.join("campbell.svg");
         let critical = self.critical.iter().flatten().map(|critical| critical.speed);
@@ -197,7 +193,7 @@ impl Spinning {
         let value = |(row, column): (usize, usize)| {
             let Some(column) = column.checked_sub(1) else { return self.campbell.speeds[row] };
             let line = &self.campbell.lines[column / 3];
-            // Below the speeds at which it swings a motion dies out without.
+            // At lower speeds the mode is overdamped.
             let above = row.checked_sub(self.campbell.speeds.len() - line.len());
             let Some(whirl) = above.map(|row| &line[row]) else {
                 return [0.0, 0.0, 1.0][column % 3];

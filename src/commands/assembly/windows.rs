@@ -1,4 +1,4 @@
-//! What `bearing plan` says of windows between exchanges of bodies and solids in explicit steps.
+//! Coupling steps of bodies and explicit solids in `bearing plan`.
 
 use bearing_dynamics::motion::bonded_bushing::BondedBushing;
 use bearing_dynamics::motion::coupling::Exchange;
@@ -10,24 +10,24 @@ use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use std::error::Error;
 
-/// Windows of explicit steps from the start.
+/// Number and length of the coupling steps, and the steps of each solid within one, at the start of a run.
 pub fn windows_text(
     scene: &AssemblyScene,
     parts: HousedParts,
     run: &RunSettings,
 ) -> Result<String, Box<dyn Error>> {
-    let (housed, windows) = parts.started(run.output_interval)?;
-    let all = whole_number(run.end, run.output_interval) * windows;
+    let (housed, per_row) = parts.started(run.output_interval)?;
+    let all = whole_number(run.end, run.output_interval) * per_row;
     let mut nodes = String::new();
     for seat in housed.seats() {
         let (tested, out_of_reach) = seat.counts();
         let of = seat.seat.suffix();
-        nodes +=
-            &format!("; at the start {tested} bore nodes{of} tested, {out_of_reach} out of reach");
+        nodes += &format!(
+            "; at the start {tested} bore nodes{of} tested for contact, {out_of_reach} too far away"
+        );
         if out_of_reach > 0 {
             let moved = to_digits(0.5e6 * seat.seat.reach, 3);
-            nodes +=
-                &format!(", sorted anew each time that race and bore have moved by {moved} um");
+            nodes += &format!(", sorted again after each motion of race and bore by {moved} um");
         }
     }
     let steps = |part: &SteppedSolid| {
@@ -41,9 +41,9 @@ pub fn windows_text(
     let of_bushing =
         |of: &BondedBushing| format!("{} of the bushing {}", steps_of(of.steps), of.name);
     solids.extend(housed.bushings.iter().map(of_bushing));
-    let cut = cut_to_window(scene, &housed, run);
+    let cut = cut_to_coupling_step(scene, &housed, run);
     Ok(format!(
-        "{all} windows of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s{cut}{nodes}",
+        "{all} coupling steps of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s{cut}{nodes}",
         housed.window,
         run.end,
         solids.join(" and "),
@@ -51,15 +51,15 @@ pub fn windows_text(
     ))
 }
 
-/// What was asked of steps and does not come to be, as none is longer than a window between two exchanges.
-fn cut_to_window(scene: &AssemblyScene, housed: &Exchange, run: &RunSettings) -> String {
+/// Requested steps that are shortened, because no step is longer than a coupling step.
+fn cut_to_coupling_step(scene: &AssemblyScene, housed: &Exchange, run: &RunSettings) -> String {
     let shorter = |of: f64, than: f64| of < than * (1.0 - 1e-9);
-    let (window, mut said) = (housed.window, String::new());
+    let (window, mut text) = (housed.window, String::new());
     let step = housed.simulation.step_size;
     if let Stepping::Fixed(given) = run.options.stepping
         && shorter(step, given)
     {
-        said += &format!("; numerics.step = {given:e} s is cut to the window");
+        text += &format!("; numerics.step = {given:e} s is cut to the coupling step");
     }
     for (part, placed) in
         housed.solids.iter().zip(scene.bearings.iter().filter_map(|placed| placed.housing.as_ref()))
@@ -67,16 +67,16 @@ fn cut_to_window(scene: &AssemblyScene, housed: &Exchange, run: &RunSettings) ->
         let settings = &placed.settings;
         let is_default =
             settings.defaults_used.iter().any(|used| used.key.ends_with("step_fraction"));
-        let comes_to = window / part.steps as f64 / part.solid.limit.step;
-        if !is_default && part.steps == 1 && shorter(comes_to, settings.step_fraction) {
-            said += &format!(
-                "; housing.step_fraction = {} comes to {}, as its step is cut to the window",
+        let resulting = window / part.steps as f64 / part.solid.limit.step;
+        if !is_default && part.steps == 1 && shorter(resulting, settings.step_fraction) {
+            text += &format!(
+                "; housing.step_fraction = {} becomes {}, as its step is cut to the coupling step",
                 settings.step_fraction,
-                to_digits(comes_to, 2)
+                to_digits(resulting, 2)
             );
         }
     }
-    said
+    text
 }
 
 fn steps_of(count: usize) -> String {

@@ -1,4 +1,4 @@
-//! The commands on a scene with a solid of rubber; here what they share.
+//! Commands on a scene with a solid of rubber, and the functions that they share.
 
 pub mod plan;
 pub mod statics;
@@ -11,10 +11,9 @@ use bearing_dynamics::solids::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::path::Path;
 
-/// A scene with its mesh, ready to be solved.
 pub type Prepared = solid::Prepared<RubberSetup>;
 
-/// Reads or makes the mesh; the document says where in the scene an error stands.
+/// Reads or generates the mesh. The document locates errors in the scene.
 pub fn prepare(
     document: &Document,
     scene: &SolidScene,
@@ -27,13 +26,12 @@ pub fn prepare(
     solid::prepared(document, scene, |built| rubber_setup(scene, rubber, built), of)
 }
 
-/// Without inertia nothing stands against a motion of the whole.
+/// Returns an error if the solid can move as a rigid body: without inertia nothing resists that.
 pub fn refuse_free(path: &Path, free: &FreeMotions) -> Result<(), Box<dyn Error>> {
     match free.count {
         0 => Ok(()),
         _ => Err(format!(
-            "{}: a solid of rubber is solved without inertia and must be held, and this one is free to move {}; add \
-             [[solid.fixed]]",
+            "{}: the solid of rubber is free to move {}, and without inertia it needs supports; add [[solid.fixed]]",
             path.display(),
             free.names()
         )

@@ -1,4 +1,4 @@
-//! `bearing plan` of a solid of rubber: what each of its commands would do.
+//! `bearing plan` of a solid of rubber: stages of each command.
 
 use super::{Prepared, prepare};
 use crate::commands::plan::say_plan;
@@ -18,7 +18,7 @@ use bearing_dynamics::solids::rubber::steps::Stepping;
 pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {
     let prepared = prepare(document, scene, rubber)?;
     let mut lines: Vec<String> =
-        mesh_notes(&prepared.built).iter().map(|said| note("mesh", said)).collect();
+        mesh_notes(&prepared.built).iter().map(|text| note("mesh", text)).collect();
     if prepared.free.count == 0 {
         lines.push(note("memory", &memory::text(&needed::rubber(&prepared.setup.model))));
         lines.extend(scene.run.as_ref().map(|run| note("steps", &count(run))));
@@ -32,15 +32,15 @@ fn count(run: &SolidRun) -> String {
     let rows = whole_number(run.end, run.output_interval);
     let steps = match run.steps {
         RunSteps::Implicit(Stepping::Fixed(step)) => format!(
-            "{}, and one more for each corner of motions and loads that lies within one",
+            "{}, and one more for each corner of motions and loads within a step",
             rows * whole_steps(run.output_interval, step)
         ),
-        _ => format!("{rows} at least, one a row"),
+        _ => format!("at least {rows}, one a row"),
     };
-    format!("{steps}; each takes an equilibrium, most with the factors of an earlier one")
+    format!("{steps}; each solves an equilibrium, most with factors of an earlier one")
 }
 
-/// Items of a run, or without one of statics.
+/// Items of a run, or of statics without one.
 pub fn items(
     scene: &SolidScene,
     rubber: &RubberScene,
@@ -71,13 +71,13 @@ fn steps(run: &SolidRun) -> String {
     }
 }
 
-/// Items of a run, or of statics of what has none, and in a line each what the other commands would do.
+/// Items of a run, or of statics without one, and one item for each other command.
 fn all_items(scene: &SolidScene, rubber: &RubberScene, prepared: &Prepared) -> Vec<Item> {
     let subject = Subject::Solid(0);
-    let held = prepared.free.count == 0;
-    let free = format!("free to move {}: rubber must be held", prepared.free.names());
+    let supported = prepared.free.count == 0;
+    let free = format!("free to move {}: rubber needs supports", prepared.free.names());
     let mut items = items(scene, rubber, prepared, scene.run.as_ref());
-    if !held {
+    if !supported {
         items.retain(|item| !matches!(item.stage, Stage::Implicit | Stage::SolidStatics));
         items.push(Item::skips(Stage::SolidStatics, subject, free));
     } else if scene.run.is_some() {
@@ -98,4 +98,4 @@ fn all_items(scene: &SolidScene, rubber: &RubberScene, prepared: &Prepared) -> V
     items
 }
 
-pub const NO_MODES: &str = "rubber is solved without inertia, and has no natural modes";
+pub const NO_MODES: &str = "rubber is solved without inertia, so it has no natural modes";

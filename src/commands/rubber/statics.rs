@@ -1,4 +1,4 @@
-//! `bearing statics` of a solid of rubber: its relaxed equilibrium, and its answer to small vibrations.
+//! `bearing statics` of a solid of rubber: relaxed equilibrium and response to small vibrations.
 
 use super::{Prepared, plan, prepare, refuse_free};
 use crate::commands::asked::Asked;
@@ -32,7 +32,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 pub const HARMONIC: &str = "harmonic.csv";
-/// Equilibria on the way to one that was lost.
+/// Table of the equilibria before a failed one.
 const CURVE: &str = "curve.csv";
 
 pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {
@@ -53,18 +53,18 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
         vec![("mesh".into(), *mesh_seconds), ("solve".into(), start.elapsed().as_secs_f64())];
     let start = Instant::now();
     let mut ran = found.ran;
-    let answers = match &rubber.harmonic {
-        Some(asked) => Some((asked, answers(document, &prepared, asked, &mut ran)?)),
+    let responses = match &rubber.harmonic {
+        Some(asked) => Some((asked, responses(document, &prepared, asked, &mut ran)?)),
         None => None,
     };
-    if answers.is_some() {
+    if responses.is_some() {
         seconds.push(("vibrations".into(), start.elapsed().as_secs_f64()));
     }
     let stress = rubber_stresses(model, &found.state)?;
     let mut record = record(scene, plan::items(scene, rubber, &prepared, None), seconds)?;
     record.ran.solids = vec![ran];
-    let section = match &answers {
-        Some((asked, answers)) => Some(harmonic_section(&asked.set, axis(asked), answers)?),
+    let section = match &responses {
+        Some((asked, responses)) => Some(harmonic_section(&asked.set, axis(asked), responses)?),
         None => None,
     };
     let (mut summary, series) =
@@ -74,15 +74,15 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     say_mesh_notes(built)?;
     say(&format!("relaxed, under loads and displacements of t = {} s\n", display_time(time)))?;
     say(&table(&summary))?;
-    if let Some((asked, answers)) = &answers {
-        say(&harmonic_table(asked, answers))?;
+    if let Some((asked, responses)) = &responses {
+        say(&harmonic_table(asked, responses))?;
     }
     say(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     write(&folder, &built.mesh, &found.state.displacement, &stress, &series)?;
     let mut files = WRITTEN + 1;
-    if let Some((_, answers)) = &answers {
-        harmonic_series(answers)?.write_csv(&folder.join(HARMONIC))?;
+    if let Some((_, responses)) = &responses {
+        harmonic_series(responses)?.write_csv(&folder.join(HARMONIC))?;
         files += 1;
     }
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
@@ -90,7 +90,7 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
     Ok(Outcome::Done)
 }
 
-/// A bar for the parts of loads and displacements, and whether to go on.
+/// Progress bar of loads and displacements, and the interrupt flag.
 struct Watch {
     bar: ProgressBar,
     interrupted: Arc<AtomicBool>,
@@ -98,7 +98,7 @@ struct Watch {
 
 impl Watch {
     /// # Errors
-    /// A signal that cannot be heard.
+    /// If the signal handler cannot be installed.
     fn new() -> Result<Watch, Box<dyn Error>> {
         // Hidden by itself when standard error is not a terminal.
         let bar = ProgressBar::new(1000);
@@ -106,21 +106,21 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style);
         }
-        // Who asks twice does not want to wait for the end of a part.
+        // A second interrupt ends the process at once.
         Ok(Watch { bar, interrupted: interruption(|| std::process::exit(2))? })
     }
 
     fn record(&self, part: f64) -> bool {
         self.bar.set_position((1000.0 * part) as u64);
-        // The last part leaves nothing to interrupt.
+        // After the last part there is nothing to interrupt.
         part >= 1.0 || !self.interrupted.load(Ordering::Relaxed)
     }
 }
 
-/// Of an equilibrium that was lost on the way: writes what was found before, and says what to do.
+/// Writes the equilibria before a failed one, and adds advice to its error.
 fn keep_curve(prepared: &Prepared, folder: Option<&Path>, error: RelaxedError) -> Box<dyn Error> {
-    const LOST: &str = "; ask for less, refine the mesh where it is bonded, or let it take time (`bearing run`): what \
-                        folds slowly follows further in steps while Maxwell elements hold it";
+    const LOST: &str = "; reduce loads and displacements, refine the mesh where it is bonded, or use `bearing run`: \
+                        with Maxwell elements it can follow slow folding further";
     let (reached, advice) = match &error {
         RelaxedError::Lost { reached, .. } => (reached, LOST),
         RelaxedError::Stopped { reached, .. } => (reached, ""),
@@ -130,9 +130,9 @@ fn keep_curve(prepared: &Prepared, folder: Option<&Path>, error: RelaxedError) -
     let Some(folder) = folder.filter(|_| count > 0) else {
         return format!("{text}{advice}").into();
     };
-    // Results of an earlier command stay, whatever they are of.
+    // Results of an earlier command are kept.
     let earlier = match folder.join("summary.json").exists() {
-        true => ", beside the results that were there",
+        true => ", next to the earlier results",
         false => "",
     };
     let curve = summary::reached_series(&prepared.setup, reached);
@@ -147,7 +147,7 @@ fn keep_curve(prepared: &Prepared, folder: Option<&Path>, error: RelaxedError) -
     }
 }
 
-fn answers(
+fn responses(
     document: &Document,
     prepared: &Prepared,
     asked: &Harmonic,
@@ -162,7 +162,7 @@ fn axis(asked: &Harmonic) -> &'static str {
     ["x", "y", "z"][asked.axis]
 }
 
-fn harmonic_table(asked: &Harmonic, answers: &[Answer]) -> String {
+fn harmonic_table(asked: &Harmonic, responses: &[Answer]) -> String {
     let mut text =
         format!("small vibrations of \"{}\" along {}, about rest\n", asked.set, axis(asked));
     let _ = writeln!(
@@ -170,12 +170,12 @@ fn harmonic_table(asked: &Harmonic, answers: &[Answer]) -> String {
         "{:>14}{:>16}{:>16}{:>16}{:>12}",
         "frequency, Hz", "K', N/m", "K'', N/m", "K_d, N/m", "eta_d"
     );
-    for answer in answers {
-        let (stiffness, of) = (&answer.stiffness, &answer.hysteresis);
+    for response in responses {
+        let (stiffness, of) = (&response.stiffness, &response.hysteresis);
         let _ = writeln!(
             text,
             "{:>14}{:>16.1}{:>16.1}{:>16.1}{:>12.5}",
-            display_time(answer.frequency),
+            display_time(response.frequency),
             stiffness.storage,
             stiffness.loss,
             of.dynamic_stiffness,

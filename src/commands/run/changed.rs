@@ -1,4 +1,4 @@
-//! What has changed in a scene since the run that is to go on was begun.
+//! Differences between a scene and the run that it is to resume.
 
 use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::compare::channels::{Leaf, leaves};
@@ -7,12 +7,12 @@ use bearing_dynamics::output::results::RunRecord;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Changes that are named.
-const MOST: usize = 5;
-/// What may change from one part of a run to the next.
+/// Largest number of changes that are listed.
+const LISTED: usize = 5;
+/// Keys that may change between the parts of a run.
 const FREE: [&str; 4] = ["title", "end", "plots", "window_start"];
 
-/// What the summary in a folder has otherwise than the scene as it is now; empty where there is no summary.
+/// Text of the differences between the summary in a folder and the present scene; empty without a summary.
 pub fn since(folder: &Path, record: &RunRecord) -> String {
     let Ok(before) = json::read(&folder.join("summary.json")) else { return String::new() };
     let mut found = differences(&before["scene"], &record.scene);
@@ -23,27 +23,26 @@ pub fn since(folder: &Path, record: &RunRecord) -> String {
         found.append(&mut of_motion);
     }
     if found.is_empty() {
-        return "; nothing of bodies and loads is otherwise: look at [numerics] (accuracy, integrator, step, start, energy_limit) \
-                and at the mesh"
+        return "; bodies and loads are unchanged: check [numerics] (accuracy, integrator, step, start, energy_limit) and the mesh"
             .into();
     }
-    let more = found.len().saturating_sub(MOST);
+    let more = found.len().saturating_sub(LISTED);
     let named: Vec<String> =
-        found.into_iter().take(MOST).map(|(path, how)| format!("{path} {how}")).collect();
+        found.into_iter().take(LISTED).map(|(path, how)| format!("{path} {how}")).collect();
     let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
     format!("; changed: {}{rest}", named.join(", "))
 }
 
-/// Path of each value that is not the same in both, and what it was and is.
+/// Path of each value that differs, with its old and new value.
 fn differences(before: &Value, now: &Value) -> Vec<(String, String)> {
     let [old, new] =
         [before, now].map(|tree| leaves(&json!({ "scene": tree })).unwrap_or_default());
     let find = |list: &[Leaf], path: &str| {
-        list.iter().find(|leaf| leaf.path == path).map_or("not there".to_string(), text)
+        list.iter().find(|leaf| leaf.path == path).map_or("absent".to_string(), text)
     };
     let is_free = |leaf: &&Leaf| leaf.path.split('.').any(|part| FREE.contains(&part));
-    let gone = old.iter().filter(|leaf| new.iter().all(|other| other.path != leaf.path));
-    let all = new.iter().chain(gone).filter(|leaf| !is_free(leaf));
+    let removed = old.iter().filter(|leaf| new.iter().all(|other| other.path != leaf.path));
+    let all = new.iter().chain(removed).filter(|leaf| !is_free(leaf));
     let paths = all.map(|leaf| leaf.path.as_str());
     paths
         .map(|path| (path, find(&old, path), find(&new, path)))

@@ -1,4 +1,4 @@
-//! The few numbers of a run that `bearing run` ends with.
+//! Key figures that `bearing run` prints at its end.
 
 use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::motion::simulation::Simulation;
@@ -10,9 +10,8 @@ use bearing_dynamics::output::table::RunTable;
 
 type Lines = Vec<(String, String)>;
 
-/// Where the races were, the largest loads, what is missing of the energy, and the effort. A mean is
-/// one over the rows of the window, an extreme one over all steps of a bearing by itself, over all rows of
-/// one in its housing.
+/// Displacements of the races, largest loads, energy residual and effort. Means are over the rows of the averaging
+/// window; extremes are over all steps of a single bearing, or over all rows of one in a housing.
 pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String {
     let mut lines = Lines::new();
     match &session.motion {
@@ -23,13 +22,13 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
                 let of = bearing.prefix();
                 let [y, z] =
                     ["y", "z"].map(|axis| 1e6 * largest(table, &format!("{of}outer_{axis}")));
-                let said = format!("{y:.6} um along y, {z:.6} um along z");
-                lines.push((format!("{}outer race, farthest", of.replace('_', " ")), said));
+                let text = format!("{y:.6} um along y, {z:.6} um along z");
+                lines.push((format!("{}outer race, farthest", of.replace('_', " ")), text));
             }
         }
-        Motion::QuasiStaticSequence(course) => {
-            let bearings = &course.problem.assembly.bearings;
-            bearings.iter().for_each(|of| races_apart(table, &of.prefix(), &mut lines));
+        Motion::QuasiStaticSequence(sequence) => {
+            let bearings = &sequence.problem.assembly.bearings;
+            bearings.iter().for_each(|of| race_displacements(table, &of.prefix(), &mut lines));
         }
     }
     match &session.motion {
@@ -40,8 +39,8 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             let seats = &simulation.system.assembly.seats;
             lines.extend(seats.iter().map(|seat| of_bore(table, &seat.label)));
         }
-        Motion::QuasiStaticSequence(course) => {
-            lines.extend(course.problem.seats.iter().map(|seat| of_bore(table, &seat.name)));
+        Motion::QuasiStaticSequence(sequence) => {
+            lines.extend(sequence.problem.seats.iter().map(|seat| of_bore(table, &seat.name)));
         }
         Motion::Solid(_) => {}
         Motion::Rubber(moving) => {
@@ -51,8 +50,8 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
     }
     if session.motion.is_balanced_whole() {
         let (most, of) = (session.watch.largest_residual, session.watch.turned_over);
-        let said = format!("{most:.3e} J at most, of {of:.3e} J turned over");
-        lines.push(("energy unaccounted for".into(), said));
+        let text = format!("{most:.3e} J at most, of {of:.3e} J exchanged");
+        lines.push(("energy unaccounted for".into(), text));
     }
     let done = session.motion.done();
     lines.push(match &session.motion {
@@ -61,93 +60,95 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         }
         Motion::Housed(housed) => {
             let of_bearing = housed.simulation.steps;
-            let mut said = format!("{done} in {seconds:.2} s; ");
+            let mut text = format!("{done} in {seconds:.2} s; ");
             for kind in ["housing", "shaft"] {
                 let of_kind = housed.solids.iter().filter(|part| part.kind() == kind);
                 let steps: u64 = of_kind.map(|part| part.solid.steps).sum();
                 if steps > 0 {
-                    said += &format!("{steps} steps of the {kind}, ");
+                    text += &format!("{steps} steps of the {kind}, ");
                 }
             }
             for bushing in &housed.bushings {
-                said += &format!("{} steps of the bushing {}, ", bushing.steps_done(), bushing.name);
+                text += &format!("{} steps of the bushing {}, ", bushing.steps_done(), bushing.name);
             }
-            said += &format!("{of_bearing} of the bearing");
-            ("windows".into(), said)
+            text += &format!("{of_bearing} of the bearing");
+            ("coupling steps".into(), text)
         }
-        Motion::QuasiStaticSequence(course) => ("equilibria".into(), effort(course, seconds)),
+        Motion::QuasiStaticSequence(sequence) => ("equilibria".into(), effort(sequence, seconds)),
         Motion::Rubber(moving) => {
             let (iterations, factorisations) = moving.solid.work();
-            let said = format!(
-                "{} in {seconds:.2} s, {} undone; {iterations} iterations, {factorisations} factorisations",
+            let text = format!(
+                "{} in {seconds:.2} s, {} rejected; {iterations} iterations, {factorisations} factorisations",
                 moving.solid.counts.accepted, moving.solid.counts.undone
             );
-            ("steps".into(), said)
+            ("steps".into(), text)
         }
     });
     lines.iter().map(|(label, value)| format!("{label:<22} {value}\n")).collect()
 }
 
-/// Largest force of each support along each axis, and what it was at the end.
+/// Largest force of each support along each axis, and its value at the end.
 fn of_supports(session: &Session, table: &RunTable, has_maxwell: bool, lines: &mut Lines) {
     for support in &session.recorder.supports {
         for axis in support.axes().into_iter().map(|axis| ["x", "y", "z"][axis]) {
             let column = format!("reaction_{}_{axis}", support.name);
             let (most, all) = (largest(table, &column), table.all(&column).unwrap_or_default());
             let last = all.last().copied().unwrap_or(0.0);
-            let said = format!("{most:.6} N at most, {last:.6} N at the end");
-            lines.push((format!("{} along {axis}", support.name), said));
+            let text = format!("{most:.6} N at most, {last:.6} N at the end");
+            lines.push((format!("{} along {axis}", support.name), text));
         }
     }
     let lost = table.all("energy_viscous").unwrap_or_default();
     if let Some(lost) = lost.last().filter(|_| has_maxwell) {
-        lines.push(("held or lost by Maxwell".into(), format!("{lost:.6} J at the end")));
+        lines.push((
+            "viscous energy".into(),
+            format!("{lost:.6} J at the end, stored or dissipated"),
+        ));
         let last = |name: &str| table.all(name).and_then(|all| all.last().copied()).unwrap_or(0.0);
         let of = ["maxwell", "dissipated", "finite_strain", "residual"];
         let [springs, dashpots, beyond, rest] = of.map(|of| last(&format!("energy_{of}")));
-        let said = format!(
-            "{springs:.6} J in springs, {dashpots:.6} J taken by dashpots; {beyond:.3e} J by finite strain, {rest:.3e} J \
+        let text = format!(
+            "{springs:.6} J in Maxwell springs, {dashpots:.6} J dissipated; {beyond:.3e} J by finite strain, {rest:.3e} J \
              unaccounted for"
         );
-        lines.push(("as of small strain".into(), said));
+        lines.push(("by small strain".into(), text));
     }
 }
 
-/// The seat of this name.
 fn of_bore(table: &RunTable, name: &Option<String>) -> (String, String) {
     let of = prefix(name);
     let largest = |column: &str| largest(table, &format!("{of}{column}"));
     let deepest = 1e6 * largest("bore_deepest_penetration");
     let touching = largest("bore_nodes_touching");
     let pressure = 1e-6 * largest("bore_peak_pressure");
-    let said = format!(
-        "penetration up to {deepest:.6} um, up to {touching} nodes touching, pressure up to \
+    let text = format!(
+        "penetration up to {deepest:.6} um, up to {touching} contact nodes, pressure up to \
          {pressure:.4} MPa, {PEAK_PRESSURE}"
     );
-    (format!("{}bore", of.replace('_', " ")), said)
+    (format!("{}bore", of.replace('_', " ")), text)
 }
 
-/// Largest size of a column over all rows.
+/// Largest absolute value of a column over all rows.
 fn largest(table: &RunTable, name: &str) -> f64 {
     table.all(name).unwrap_or_default().iter().fold(0.0f64, |a, b| a.max(b.abs()))
 }
 
-fn effort(course: &QuasiStaticSequence, seconds: f64) -> String {
-    let effort = &course.effort;
+fn effort(sequence: &QuasiStaticSequence, seconds: f64) -> String {
+    let effort = &sequence.effort;
     format!(
-        "{} in {seconds:.2} s, {} iterations, {} changes of contact, unbalanced part of the load up to \
+        "{} in {seconds:.2} s, {} iterations, {} changes of contact, relative residual up to \
          {:.1e}",
-        course.found, effort.iterations, effort.contact_changes, effort.largest_residual
+        sequence.found, effort.iterations, effort.contact_changes, effort.largest_residual
     )
 }
 
-fn races_apart(table: &RunTable, of: &str, lines: &mut Lines) {
+fn race_displacements(table: &RunTable, of: &str, lines: &mut Lines) {
     for race in ["inner", "outer"] {
         let [y, z] = ["y", "z"].map(|axis| table.all(&format!("{of}{race}_{axis}")));
         let (Some(y), Some(z)) = (y, z) else { continue };
         let most = y.iter().zip(&z).map(|(y, z)| libm::hypot(*y, *z)).fold(0.0, f64::max);
-        let said = format!("{:.6} um across the axis", 1e6 * most);
-        lines.push((format!("{}{race} race, farthest", of.replace('_', " ")), said));
+        let text = format!("{:.6} um across the axis", 1e6 * most);
+        lines.push((format!("{}{race} race, farthest", of.replace('_', " ")), text));
     }
 }
 

@@ -1,4 +1,4 @@
-//! `bearing run SCENE`: whatever the scene has in motion, from row to row, and the folder it leaves.
+//! `bearing run SCENE`: steps in time or a quasi-static sequence, and the results folder.
 
 mod changed;
 mod figures;
@@ -24,9 +24,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Steps of a bearing between two looks at signals and clock: under a millisecond.
+/// Steps of a bearing between two checks of signals and clock: under a millisecond.
 const STEPS_AT_ONCE: u64 = 50;
-/// Elements evaluated between two looks: some milliseconds.
+/// Elements evaluated between two checks: a few milliseconds.
 const ELEMENTS_AT_ONCE: u64 = 200_000;
 
 #[derive(clap::Args)]
@@ -38,16 +38,16 @@ pub struct Arguments {
     /// Results folder [default: results/<name of the scene>-run]
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Go on from the state in the results folder; the scene's end may be later than it was
+    /// Resume from the state in the results folder; the scene's end may be later than before
     #[arg(long)]
     resume: bool,
     /// Discard an unfinished run, or results of another kind, in the results folder
     #[arg(long, conflicts_with = "resume")]
     fresh: bool,
-    /// Threads the run may use, with the same bits; a bearing of rigid parts uses one
+    /// Number of threads, with bitwise identical results; a bearing of rigid parts uses one
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
-    /// Wall time between two states kept on the way, s
+    /// Wall time between two saved states, s
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = whole_seconds,
           allow_negative_numbers = true)]
     save_every: u64,
@@ -60,7 +60,6 @@ fn whole_seconds(text: &str) -> Result<u64, String> {
     }
 }
 
-/// How the stepping ended.
 enum End {
     Complete,
     Interrupted,
@@ -110,9 +109,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
     let shared = matches!(session.motion, Motion::Solid(_) | Motion::Housed(_));
     if arguments.threads > 1 && !shared {
-        say(
-            "note: --threads has no effect here: only elements in explicit steps are shared out\n",
-        )?;
+        say("note: --threads has no effect here: only explicit finite elements run in parallel\n")?;
     }
     say(&texts::announcement(&session, &prepared, &request, choice.as_ref(), kept.as_ref()))?;
 
@@ -135,7 +132,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         End::Failed(error) => (Stopped::Failed, Some(error.to_string())),
     };
     let error = stopped_by.clone().filter(|_| stopped == Stopped::Failed);
-    // The state first: whatever goes wrong with plots and tables, the run is not lost.
+    // Saved first, so that an error in plots or tables does not lose the run.
     let last = StateRecord { stopped, error, seconds: seconds.simulate, ..record };
     state::save(&folder, &mut session, &last)?;
     write_results(&folder, &prepared, &mut session, (&request, choice), stopped_by, &seconds)?;
@@ -147,7 +144,7 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
     match end {
         End::Complete => Ok(Outcome::Done),
         End::Interrupted => Err(format!(
-            "interrupted at {}; what there is so far is in {out}. To go on: bearing run {scene} \
+            "interrupted at {}; the results so far are in {out}. To resume: bearing run {scene} \
              --out {out}{} --resume",
             texts::place(session),
             arguments.changes.again()
@@ -166,13 +163,13 @@ fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) ->
     }
 }
 
-/// The state to go on from, if that was asked for.
+/// The saved state, with `--resume`.
 fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>, Box<dyn Error>> {
     if arguments.resume {
         let none = || {
             format!(
-                "{} holds no run to go on with (there is no {}); name the folder of one with --out, or \
-                 start anew without --resume",
+                "{} holds no run to resume (there is no {}); name the folder of one with --out, or start \
+                 a new run without --resume",
                 folder.display(),
                 state::STATE
             )
@@ -185,7 +182,6 @@ fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>,
     Ok(None)
 }
 
-/// What goes with a run under way.
 struct Running<'r> {
     prepared: &'r Prepared<'r>,
     folder: &'r Path,
@@ -195,7 +191,7 @@ struct Running<'r> {
 }
 
 impl Running<'_> {
-    /// Steps until the end, a signal or an error; keeps a state every now and then.
+    /// Steps until the end, a signal or an error; saves the state at intervals.
     fn simulate(&self, session: &mut Session) -> Result<End, Box<dyn Error>> {
         let bar = progress_bar(session);
         let start = Instant::now();
@@ -228,7 +224,7 @@ impl Running<'_> {
     }
 }
 
-/// Steps, windows or equilibria between two looks at signals and clock.
+/// Steps, coupling steps or equilibria between two checks of signals and clock.
 fn at_once(session: &Session) -> u64 {
     let elements = |solid: &ExplicitSolid| solid.model.problem.elements.len().max(1) as u64;
     match &session.motion {
@@ -236,15 +232,15 @@ fn at_once(session: &Session) -> u64 {
         Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => 1,
         Motion::Solid(moving) => (ELEMENTS_AT_ONCE / elements(&moving.solid)).max(1),
         Motion::Housed(housed) => {
-            let in_window = |part: &SteppedSolid| elements(&part.solid) * part.steps as u64;
-            let of_solids: u64 = housed.solids.iter().map(in_window).sum();
+            let per_coupling_step = |part: &SteppedSolid| elements(&part.solid) * part.steps as u64;
+            let of_solids: u64 = housed.solids.iter().map(per_coupling_step).sum();
             let of_bushings: u64 = housed.bushings.iter().map(BondedBushing::effort).sum();
             (ELEMENTS_AT_ONCE / (of_solids + of_bushings).max(1)).max(1)
         }
     }
 }
 
-/// How much of the run is done, of a thousand.
+/// Completed part of the run, in thousandths.
 fn permille(session: &Session) -> u64 {
     (1000.0 * session.motion.time() / session.clock.end) as u64
 }

@@ -1,4 +1,4 @@
-//! From a scene to what moves in its run: the one place that asks what the scene is of.
+//! Preparation of a run: meshes, condensed or reduced housings, and the parts that move.
 
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::lists::Lists;
@@ -33,18 +33,16 @@ use std::time::Instant;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
-/// A scene ready to run.
 pub(super) enum Prepared<'s> {
     Bearings {
-        /// As the scene has them.
         lists: Box<Lists<'s>>,
         settings: RunSettings,
-        /// With the housings that are reduced, without springs of bushings and shafts in elements.
+        /// With the reduced housings, without the springs of bushings and shafts in elements.
         assembly: Box<Assembly>,
         housings: Vec<Housing>,
         bushings: Vec<BushingElements>,
         shafts: Vec<ShaftElements>,
-        way: Way,
+        method: SolutionMethod,
     },
     Solid {
         scene: &'s SolidScene,
@@ -62,36 +60,34 @@ pub(super) enum Prepared<'s> {
     },
 }
 
-/// How bearings and their housings are solved.
-pub(super) enum Way {
-    /// In steps, all housings rigid.
+pub(super) enum SolutionMethod {
+    /// Steps in time, with rigid housings.
     Rigid,
-    /// Bearings, and housings, bushings or shafts, in steps of their own.
+    /// Coupled steps of the bearings and of housings, bushings or shafts in elements.
     Explicit,
     Reduced(Box<Shapes>),
-    /// Through equilibria; and the wall time that condensing took, s.
+    /// Quasi-static sequence, and the wall time of condensing, s.
     QuasiStaticSequence(Vec<CondensedBore>, f64),
 }
 
-/// A solid of a scene and its mesh.
 #[derive(Clone, Copy)]
 pub(super) struct SolidOf<'p> {
-    /// `None` for the only one.
+    /// `None` for a single solid.
     pub name: Option<&'p str>,
     pub mesh: &'p TetMesh,
-    /// Beside bearings; that of a solid by itself is in the motion.
+    /// Model of a housing or shaft; a single solid has its model in the motion.
     pub model: Option<&'p SolidModel>,
-    /// Whether a race sits in a bore of it.
+    /// True if a race is mounted in its bore.
     pub has_bore: bool,
 }
 
-/// What fields are made of, a vector a node.
+/// Displacement (m) and velocity (m/s) of each node.
 pub(super) struct Fields {
     pub displacement: Vec<Vec3>,
     pub velocity: Option<Vec<Vec3>>,
 }
 
-/// Refuses a scene that gives no end.
+/// Returns an error if the scene has no end time.
 pub(super) fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
     let (ends, bearing_alone) = match subject {
         Subject::Assembly(scene) => (scene.run().is_some(), scene.housing_method().is_none()),
@@ -107,7 +103,6 @@ pub(super) fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
 const NO_END: &str = "a run needs `end` in [numerics]";
 
 impl<'s> Prepared<'s> {
-    /// Reads meshes, and condenses or reduces housings.
     pub fn new(document: &Document, subject: &'s Subject) -> Fallible<Prepared<'s>> {
         let scene = match subject {
             Subject::Assembly(scene) => scene,
@@ -133,27 +128,28 @@ impl<'s> Prepared<'s> {
         housings::refuse(document, scene, &housings)?;
         let lists = Box::new(Lists::of(scene));
         let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
-        let way = match scene.housing_method() {
-            None if in_elements => Way::Explicit,
-            None => Way::Rigid,
-            Some(HousingMethod::Explicit) => Way::Explicit,
-            Some(HousingMethod::Reduced) => Way::Reduced(Box::new(shapes(&lists, &housings)?)),
+        let method = match scene.housing_method() {
+            None if in_elements => SolutionMethod::Explicit,
+            None => SolutionMethod::Rigid,
+            Some(HousingMethod::Explicit) => SolutionMethod::Explicit,
+            Some(HousingMethod::Reduced) => {
+                SolutionMethod::Reduced(Box::new(shapes(&lists, &housings)?))
+            }
             Some(HousingMethod::QuasiStatic) => {
                 let start = Instant::now();
                 let bores = housings::condensed(&housings)?;
-                Way::QuasiStaticSequence(bores, start.elapsed().as_secs_f64())
+                SolutionMethod::QuasiStaticSequence(bores, start.elapsed().as_secs_f64())
             }
         };
-        let mut assembly = Box::new(match &way {
-            Way::Reduced(shapes) => shapes.assembly.clone(),
+        let mut assembly = Box::new(match &method {
+            SolutionMethod::Reduced(shapes) => shapes.assembly.clone(),
             _ => lists.assembly()?.clone(),
         });
         let bushings = take_bushings(scene, &mut assembly)?;
         let shafts = take_shafts(scene, &mut assembly)?;
-        Ok(Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, way })
+        Ok(Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, method })
     }
 
-    /// What moves.
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
         Ok(match self {
             Prepared::Bearings {
@@ -162,7 +158,7 @@ impl<'s> Prepared<'s> {
                 housings,
                 bushings,
                 shafts,
-                way: Way::Explicit,
+                method: SolutionMethod::Explicit,
                 ..
             } => {
                 let assembly = (**assembly).clone();
@@ -173,7 +169,7 @@ impl<'s> Prepared<'s> {
             Prepared::Bearings {
                 assembly,
                 housings,
-                way: Way::QuasiStaticSequence(bores, _),
+                method: SolutionMethod::QuasiStaticSequence(bores, _),
                 ..
             } => {
                 let problem = housings::course((**assembly).clone(), housings, bores);
@@ -193,19 +189,21 @@ impl<'s> Prepared<'s> {
         })
     }
 
-    /// What the scene asks of the run, with the integrator that the plan chooses for a bearing.
+    /// Run request of the scene, with the integrator that the plan chooses for a bearing.
     pub fn request(&self) -> Fallible<(RunRequest, Option<Choice>)> {
         Ok(match self {
-            Prepared::Bearings { lists, settings, assembly, way, .. } => {
+            Prepared::Bearings { lists, settings, assembly, method, .. } => {
                 let mut request = request(lists.scene.common(), settings);
-                match way {
-                    Way::Rigid => planned(request, settings, assembly),
-                    Way::Reduced(_) => {
-                        // Where races and housings start is in the assembly.
+                match method {
+                    SolutionMethod::Rigid => planned(request, settings, assembly),
+                    SolutionMethod::Reduced(_) => {
+                        // The assembly has the initial positions of races and housings.
                         request.options.start = Start::Equilibrium;
                         planned(request, settings, assembly)
                     }
-                    Way::Explicit | Way::QuasiStaticSequence(..) => (request, None),
+                    SolutionMethod::Explicit | SolutionMethod::QuasiStaticSequence(..) => {
+                        (request, None)
+                    }
                 }
             }
             Prepared::Solid { settings, .. } | Prepared::Rubber { settings, .. } => {
@@ -226,7 +224,6 @@ impl<'s> Prepared<'s> {
         })
     }
 
-    /// What a person should know of mesh and bore before results.
     pub fn notes(&self) -> Vec<String> {
         match self {
             Prepared::Bearings { housings, .. } => {
@@ -246,7 +243,7 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// What all bearings of the scene share, if it has any.
+    /// Settings that all bearings of the scene share; `None` without bearings.
     pub fn bearing(&self) -> Option<&Scene> {
         match self {
             Prepared::Bearings { lists, .. } => Some(lists.scene.common()),
@@ -254,9 +251,9 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Displacements (m) and velocities (m/s) of a solid; `None` where there is nothing yet.
+    /// Displacements (m) and velocities (m/s) of a solid; `None` if there are none yet.
     pub fn fields(&self, session: &mut Session, solid: usize) -> Option<Fields> {
-        if let Prepared::Bearings { way: Way::Reduced(shapes), .. } = self
+        if let Prepared::Bearings { method: SolutionMethod::Reduced(shapes), .. } = self
             && let Some([displacement, velocity]) = shapes.fields(&session.motion, solid)
         {
             return Some(Fields { displacement, velocity: Some(velocity) });
@@ -265,7 +262,7 @@ impl<'s> Prepared<'s> {
         let velocity = match &mut session.motion {
             Motion::Solid(moving) => Some(moving.solid.velocity()),
             Motion::Rubber(_) => None,
-            // Between kicks the rates of a housing are those of the bearing's time.
+            // Between kicks the rates of a housing are at the time of the bearing.
             motion => motion
                 .solids()
                 .get(solid)
@@ -274,7 +271,7 @@ impl<'s> Prepared<'s> {
         (!displacement.is_empty()).then_some(Fields { displacement, velocity })
     }
 
-    /// The solids of the scene: by themselves, or housings.
+    /// Solids of the scene: a single solid, or housings and shafts.
     pub fn solids(&self) -> Vec<SolidOf<'_>> {
         fn of_housing(Housing { name, built, setup, .. }: &Housing) -> SolidOf<'_> {
             let (mesh, model) = (&built.mesh, Some(&setup.model));
@@ -296,7 +293,7 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// From when on means are taken, s.
+    /// Start of the averaging window, s.
     pub fn window_start(&self) -> f64 {
         match self {
             Prepared::Bearings { settings, .. } => settings.window_start,
@@ -304,7 +301,6 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Whether spectra are asked for.
     pub fn has_spectra(&self) -> bool {
         match self {
             Prepared::Solid { scene, .. } | Prepared::Rubber { scene, .. } => scene.draw_spectrum,
@@ -312,13 +308,15 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Wall times of what was done before the steps, s.
+    /// Wall times of condensing and reducing, s.
     pub fn seconds(&self) -> Vec<(String, f64)> {
         match self {
-            Prepared::Bearings { way: Way::QuasiStaticSequence(_, condense), .. } => {
+            Prepared::Bearings {
+                method: SolutionMethod::QuasiStaticSequence(_, condense), ..
+            } => {
                 vec![("condense".into(), *condense)]
             }
-            Prepared::Bearings { way: Way::Reduced(shapes), .. } => {
+            Prepared::Bearings { method: SolutionMethod::Reduced(shapes), .. } => {
                 let [condense, reduce] = shapes.seconds;
                 vec![("condense".into(), condense), ("reduce".into(), reduce)]
             }
@@ -326,7 +324,6 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Scene, plan, assumptions and defaults, as every summary has them.
     pub fn record(
         &self,
         request: &RunRequest,
@@ -334,10 +331,20 @@ impl<'s> Prepared<'s> {
         seconds: Vec<(String, f64)>,
     ) -> Fallible<RunRecord> {
         match self {
-            Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, way } => {
+            Prepared::Bearings {
+                lists,
+                settings,
+                assembly,
+                housings,
+                bushings,
+                shafts,
+                method,
+            } => {
                 let scene = lists.scene;
-                let planned = match way {
-                    Way::QuasiStaticSequence(..) => plan::of_course(lists, housings, settings)?,
+                let planned = match method {
+                    SolutionMethod::QuasiStaticSequence(..) => {
+                        plan::of_course(lists, housings, settings)?
+                    }
                     _ => {
                         let elements = (&bushings[..], &shafts[..]);
                         plan::stages(scene, (housings, elements), assembly, request, choice)
@@ -345,14 +352,14 @@ impl<'s> Prepared<'s> {
                 };
                 let mut record = assembly::record(lists, planned, seconds)?;
                 record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));
-                record.ran.solids = match way {
-                    Way::QuasiStaticSequence(bores, _) => {
+                record.ran.solids = match method {
+                    SolutionMethod::QuasiStaticSequence(bores, _) => {
                         bores.iter().map(|bore| bore.ran).collect()
                     }
-                    Way::Reduced(shapes) => shapes.ran.clone(),
-                    Way::Rigid | Way::Explicit => Vec::new(),
+                    SolutionMethod::Reduced(shapes) => shapes.ran.clone(),
+                    SolutionMethod::Rigid | SolutionMethod::Explicit => Vec::new(),
                 };
-                // Of one in its housing it is part of the scene.
+                // With a single bearing in a housing the motion is part of the scene.
                 if housings.is_empty() || scene.one().is_none() {
                     let motion = assembly::echo::motion(scene)?;
                     record.sections.push(("motion".into(), motion));
@@ -371,7 +378,6 @@ impl<'s> Prepared<'s> {
     }
 }
 
-/// What the scene asks of the run of its bearing.
 pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     let mut channels = settings.channels.clone();
     let plots = &scene.dynamics.plots;
@@ -392,7 +398,7 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
     }
 }
 
-/// The same with the integrator that the plan chooses, where the scene leaves it to the plan.
+/// [`request`] with the integrator that the plan chooses, if the scene gives none.
 pub fn planned_request(
     scene: &AssemblyScene,
     settings: &RunSettings,

@@ -1,7 +1,7 @@
-//! What a run leaves in its folder: fields on the way; tables, plots and the summary at its end.
+//! Results of a run: fields during the run; tables, plots and the summary at its end.
 
 use super::figures::key_figures;
-use super::prepared::{Fields, Prepared, SolidOf, Way};
+use super::prepared::{Fields, Prepared, SolidOf, SolutionMethod};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
 use crate::commands::say;
@@ -50,17 +50,17 @@ pub(super) struct Seconds {
     pub simulate: f64,
 }
 
-/// What the summary and a person get besides what moves.
+/// Sections of the summary, warnings and printed lines that depend on the kind of scene.
 #[derive(Default)]
-struct Said {
+struct Extras {
     sections: Vec<(String, Value)>,
     warnings: Vec<Warning>,
-    /// Lines after the figures.
+    /// Lines printed after the key figures.
     lines: Vec<String>,
     files: usize,
 }
 
-/// Everything at the end; the state is there already.
+/// Writes and prints all results; the state has been saved before.
 pub(super) fn write_results(
     folder: &Path,
     prepared: &Prepared,
@@ -70,30 +70,30 @@ pub(super) fn write_results(
     seconds: &Seconds,
 ) -> Fallible<()> {
     let start = Instant::now();
-    let mut said = Said::default();
+    let mut extras = Extras::default();
     let table = RunTable::new(session, prepared.window_start())?;
     match prepared {
         Prepared::Bearings { lists, .. } => {
             let scene = lists.scene;
-            said.warnings = of_run(scene, session);
+            extras.warnings = of_run(scene, session);
             if scene.common().dynamics.plots.contains(&RunPlot::RunUp) {
-                said.lines.extend(without_run_up(&table).map(|why| format!("note: {why}")));
+                extras.lines.extend(without_run_up(&table).map(|why| format!("note: {why}")));
             }
-            housing_results(folder, prepared, session, &table, &mut said)?;
+            housing_results(folder, prepared, session, &table, &mut extras)?;
         }
         Prepared::Solid { .. } => {
-            // Of steps that stopped on the way the state at the last row is not at hand.
+            // After an early stop the state at the last row is not available.
             if session.status == Status::Complete {
                 write_last_fields(folder, prepared, session)?;
             }
-            solid_results(prepared, session, &mut said)?;
+            solid_results(prepared, session, &mut extras)?;
         }
         Prepared::Rubber { .. } => {
             write_last_fields(folder, prepared, session)?;
-            rubber_results(prepared, session, &mut said)?;
+            rubber_results(prepared, session, &mut extras)?;
         }
     }
-    said.sections.push(("warnings".into(), json!(said.warnings)));
+    extras.sections.push(("warnings".into(), json!(extras.warnings)));
     let warnings = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let spectra = spectra(prepared, session, &table);
@@ -107,7 +107,7 @@ pub(super) fn write_results(
     ];
     stages.extend(prepared.seconds());
     let mut record = prepared.record(request, choice.as_ref(), stages)?;
-    record.sections.append(&mut said.sections);
+    record.sections.append(&mut extras.sections);
     record.ran.absorb(&session.ran());
     match &session.motion {
         Motion::Solid(moving) => record.threads = moving.threads,
@@ -127,18 +127,18 @@ pub(super) fn write_results(
     };
     let written = write_run_results(folder, session, &table, &spectra, &report)?;
     say(&key_figures(session, &table, seconds.simulate))?;
-    say(&lines(&said.warnings))?;
-    for line in &said.lines {
+    say(&lines(&extras.warnings))?;
+    for line in &extras.lines {
         say(&format!("{line}\n"))?;
     }
-    // State beside them.
+    // One more for the state.
     let fields = std::fs::read_dir(folder.join(FOLDER)).map_or(0, |files| files.count() + 1);
-    let files = written.len() + plots.len() + fields + said.files + 1;
+    let files = written.len() + plots.len() + fields + extras.files + 1;
     say(&format!("wrote {files} files to {}\n", folder.display()))?;
     Ok(())
 }
 
-/// Fields of the last row, where none were due there.
+/// Writes the fields of the last row, if they were not due there.
 fn write_last_fields(folder: &Path, prepared: &Prepared, session: &mut Session) -> Fallible<()> {
     let Some(row) = (session.recorder.rows() as u64).checked_sub(1) else { return Ok(()) };
     if session.clock.fields_due().is_some() {
@@ -148,7 +148,7 @@ fn write_last_fields(folder: &Path, prepared: &Prepared, session: &mut Session) 
     write_fields_file(folder, prepared, session, index)
 }
 
-fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fallible<()> {
+fn solid_results(prepared: &Prepared, session: &Session, extras: &mut Extras) -> Fallible<()> {
     let (Prepared::Solid { mesh, scene, .. }, Motion::Solid(moving)) = (prepared, &session.motion)
     else {
         return Ok(());
@@ -156,14 +156,14 @@ fn solid_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fal
     let built = &mesh.built;
     let (model, displacement) = (&moving.solid.model, session.displacement(0));
     let stress = stresses(model, &displacement);
-    said.sections.push(("mass".into(), mass_section(model, built)?));
-    said.sections.extend(field_sections(built, &displacement, &stress)?);
-    said.warnings = of_solid::of_run(session, model, &stress);
-    said.warnings.extend(cycles_between_rows(scene, session));
+    extras.sections.push(("mass".into(), mass_section(model, built)?));
+    extras.sections.extend(field_sections(built, &displacement, &stress)?);
+    extras.warnings = of_solid::of_run(session, model, &stress);
+    extras.warnings.extend(cycles_between_rows(scene, session));
     Ok(())
 }
 
-fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fallible<()> {
+fn rubber_results(prepared: &Prepared, session: &Session, extras: &mut Extras) -> Fallible<()> {
     let (Prepared::Rubber { mesh, scene, .. }, Motion::Rubber(moving)) =
         (prepared, &session.motion)
     else {
@@ -171,17 +171,21 @@ fn rubber_results(prepared: &Prepared, session: &Session, said: &mut Said) -> Fa
     };
     let (state, built) = (moving.solid.state(), &mesh.built);
     let stress = rubber_stresses(moving.solid.model(), state)?;
-    said.sections.push(("mass".into(), rubber_mass(&mesh.setup, built)?));
-    said.sections.extend(field_sections(built, &state.displacement, &stress)?);
-    said.warnings = of_solid::of_rubber(moving.solid.model(), &state.displacement)?;
-    said.warnings.extend(cycles_between_rows(scene, session));
+    extras.sections.push(("mass".into(), rubber_mass(&mesh.setup, built)?));
+    extras.sections.extend(field_sections(built, &state.displacement, &stress)?);
+    extras.warnings = of_solid::of_rubber(moving.solid.model(), &state.displacement)?;
+    extras.warnings.extend(cycles_between_rows(scene, session));
     Ok(())
 }
 
-/// Loads and supports of a solid by itself that swing faster than its rows show.
+/// Warning about the fastest load or support motion of a single solid, if its rows alias it.
 fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<Warning> {
-    let held = scene.held.iter().flat_map(|held| {
-        held.motion.iter().flatten().map(|motion| (format!("the set \"{}\"", held.set), motion))
+    let supports = scene.held.iter().flat_map(|support| {
+        support
+            .motion
+            .iter()
+            .flatten()
+            .map(|motion| (format!("the set \"{}\"", support.set), motion))
     });
     let loads = scene.loads.iter().flat_map(|load| {
         let profiles: Vec<&Profile> = match &load.kind {
@@ -190,26 +194,29 @@ fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<Warning>
         };
         profiles.into_iter().map(|profile| (format!("the load on \"{}\"", load.set), profile))
     });
-    let cycles = held.chain(loads).map(|(what, profile)| (what, profile.cycles()));
+    let cycles = supports.chain(loads).map(|(what, profile)| (what, profile.cycles()));
     let (what, frequency) = cycles.max_by(|a, b| a.1.total_cmp(&b.1))?;
     aliased(&what, frequency, session.clock.row_interval())
 }
 
-/// Fields of the last state of housings and shafts in elements, the nodes of the bores, and what leaving out inertia changes.
+/// Fields of the last state of housings and shafts in elements, tables of bore nodes, and the effect of inertia.
 fn housing_results(
     folder: &Path,
     prepared: &Prepared,
     session: &mut Session,
     table: &RunTable,
-    said: &mut Said,
+    extras: &mut Extras,
 ) -> Fallible<()> {
-    let Prepared::Bearings { lists, housings, shafts, way, .. } = prepared else { return Ok(()) };
+    let Prepared::Bearings { lists, housings, shafts, method, .. } = prepared else {
+        return Ok(());
+    };
     let scene = lists.scene;
     if housings.is_empty() && shafts.is_empty() {
         return Ok(());
     }
-    // Of explicit steps that stopped on the way the state at the last row is not at hand.
-    let is_sound = !matches!(way, Way::Explicit) || session.status == Status::Complete;
+    // After an early stop of explicit steps the state at the last row is not available.
+    let is_sound =
+        !matches!(method, SolutionMethod::Explicit) || session.status == Status::Complete;
     let is_sound = is_sound && session.recorder.rows() > 0;
     if is_sound {
         write_last_fields(folder, prepared, session)?;
@@ -217,19 +224,19 @@ fn housing_results(
     let mut of_all = Map::new();
     for (number, housing) in housings.iter().enumerate() {
         let mut sections = Vec::new();
-        match way {
-            Way::QuasiStaticSequence(bores, _) => {
+        match method {
+            SolutionMethod::QuasiStaticSequence(bores, _) => {
                 sections.extend(equilibrium(&bores[number], housing, session, number)?);
             }
-            Way::Reduced(shapes) => {
+            SolutionMethod::Reduced(shapes) => {
                 let cut = &shapes.reductions[number].cut_off;
                 sections.push(("seat".into(), seat_section(&housing.setup)?));
                 let name = if housing.name.is_some() { "shapes" } else { "reduced_housing" };
                 sections.push((name.into(), reduced_section(cut, &excitations(scene))?));
-                let found = pressed_by(table, &housing.name);
-                said.warnings.extend(shapes.beyond(housings, number, found).filter(|_| is_sound));
+                let found = largest_bore_load(table, &housing.name);
+                extras.warnings.extend(shapes.beyond(housings, number, found).filter(|_| is_sound));
             }
-            Way::Explicit | Way::Rigid => {
+            SolutionMethod::Explicit | SolutionMethod::Rigid => {
                 sections.push(("seat".into(), seat_section(&housing.setup)?));
             }
         }
@@ -238,35 +245,35 @@ fn housing_results(
             let model = &housing.setup.model;
             let stress = stresses(model, &displacement);
             sections.extend(field_sections(&housing.built, &displacement, &stress)?);
-            let own = match way {
-                Way::QuasiStaticSequence(..) => {
+            let own = match method {
+                SolutionMethod::QuasiStaticSequence(..) => {
                     of_solid::of_equilibrium(model, &displacement, &stress)
                 }
                 _ => of_solid::of_motion(model, &stress),
             };
-            said.warnings.extend(own.into_iter().map(|of| of.named(&housing.before())));
+            extras.warnings.extend(own.into_iter().map(|of| of.named(&housing.before())));
             let nodes = bore_nodes(&session.motion, number, model);
             bore_series(&nodes)?.write_csv(&folder.join(housing.bore_file()))?;
-            said.files += 1;
+            extras.files += 1;
         }
         match &housing.name {
             Some(name) => {
                 of_all.insert(name.clone(), Value::Object(sections.into_iter().collect()));
             }
-            None => said.sections.extend(sections),
+            None => extras.sections.extend(sections),
         }
     }
     if !of_all.is_empty() {
-        said.sections.push(("housings".into(), Value::Object(of_all)));
+        extras.sections.push(("housings".into(), Value::Object(of_all)));
     }
-    if let Motion::QuasiStaticSequence(course) = &session.motion {
-        inertia_results(scene, course, housings, said)?;
+    if let Motion::QuasiStaticSequence(sequence) = &session.motion {
+        inertia_results(scene, sequence, housings, extras)?;
     }
     Ok(())
 }
 
-/// Largest force (N) and moment (N m) across its axis on the race of this name in its bore, over all rows.
-fn pressed_by(table: &RunTable, name: &Option<String>) -> [f64; 2] {
+/// Largest radial force (N) and tilting moment (N m) of a housing on its race, over all rows.
+fn largest_bore_load(table: &RunTable, name: &Option<String>) -> [f64; 2] {
     ["force", "moment"].map(|of| {
         let [y, z] = ["y", "z"].map(|axis| {
             let column = format!("{}housing_{of}_on_outer_{axis}", prefix(name));
@@ -276,44 +283,43 @@ fn pressed_by(table: &RunTable, name: &Option<String>) -> [f64; 2] {
     })
 }
 
-/// The latest equilibrium of a housing.
 fn equilibrium(
     bore: &CondensedBore,
     housing: &Housing,
     session: &Session,
     number: usize,
 ) -> Fallible<Option<(String, Value)>> {
-    let Motion::QuasiStaticSequence(course) = &session.motion else { return Ok(None) };
-    let Some(moment) = &course.latest else { return Ok(None) };
-    let (state, displacement) = (&moment.solution.seats[number], course.displacement(number));
+    let Motion::QuasiStaticSequence(sequence) = &session.motion else { return Ok(None) };
+    let Some(moment) = &sequence.latest else { return Ok(None) };
+    let (state, displacement) = (&moment.solution.seats[number], sequence.displacement(number));
     let mut section = equilibrium_section(&housing.setup, bore, state, &displacement)?;
     section["solver"] = solver_section(moment)?;
     Ok(Some(("housing".into(), section)))
 }
 
-/// What leaving out inertia changes, about the latest equilibrium. Equilibria that were found are kept, whatever becomes of it.
+/// Effect of inertia at the latest equilibrium. An error here is only printed, so that the equilibria are kept.
 fn inertia_results(
     scene: &AssemblyScene,
-    course: &QuasiStaticSequence,
+    sequence: &QuasiStaticSequence,
     housings: &[Housing],
-    said: &mut Said,
+    extras: &mut Extras,
 ) -> Fallible<()> {
-    let problem = &course.problem;
+    let problem = &sequence.problem;
     let mut search = WarmStartedSearch::of(&problem.seats);
-    let found = problem.find(&mut search, course.time()).map_err(Box::from);
+    let found = problem.find(&mut search, sequence.time()).map_err(Box::from);
     let ratio = found.and_then(|at| FrequencyRatio::of(scene, problem, housings, &search, &at));
     match ratio {
         Ok(Some(ratio)) => {
-            said.sections.push(("inertia".into(), ratio.section()?));
-            said.lines.push(format!("inertia left out       {}", ratio.text()));
+            extras.sections.push(("inertia".into(), ratio.section()?));
+            extras.lines.push(format!("inertia left out       {}", ratio.text()));
         }
         Ok(None) => {}
-        Err(why) => said.lines.push(format!("inertia left out       not found: {why}")),
+        Err(why) => extras.lines.push(format!("inertia left out       not computed: {why}")),
     }
     Ok(())
 }
 
-/// The fields of the present state as file number `index`, and the list of all files.
+/// Writes the fields of the present state as file number `index`, and the list of all files.
 pub(super) fn write_fields_file(
     folder: &Path,
     prepared: &Prepared,
@@ -357,7 +363,7 @@ pub(super) fn write_fields_file(
     Ok(())
 }
 
-/// Spectra that were asked for: of races and cage over the window, of the probes of a solid.
+/// Requested spectra: of races and cage over the averaging window, or of the probes of a solid.
 fn spectra(prepared: &Prepared, session: &Session, table: &RunTable) -> Vec<(String, Spectrum)> {
     if !prepared.has_spectra() {
         return Vec::new();
@@ -368,7 +374,6 @@ fn spectra(prepared: &Prepared, session: &Session, table: &RunTable) -> Vec<(Str
     }
 }
 
-/// Draws what the scene asks for.
 fn pictures(
     folder: &Path,
     prepared: &Prepared,
@@ -388,7 +393,7 @@ fn pictures(
         }
         drawn.extend(spectrum_plot(&title, spectra)?);
     }
-    for picture in prepared.bearing().map_or_else(Vec::new, asked) {
+    for picture in prepared.bearing().map_or_else(Vec::new, requested_pictures) {
         drawn.extend(draw(picture, &title, table)?);
     }
     let mut written = Vec::new();
@@ -400,7 +405,7 @@ fn pictures(
     Ok(written)
 }
 
-fn asked(scene: &Scene) -> Vec<Picture> {
+fn requested_pictures(scene: &Scene) -> Vec<Picture> {
     let of_run = scene.dynamics.plots.iter().map(|plot| match plot {
         RunPlot::Orbit => Picture::Orbit,
         RunPlot::Spectrum => Picture::Spectrum,

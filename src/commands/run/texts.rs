@@ -1,6 +1,6 @@
-//! What a run says of its steps: before, on the way, and where it stopped.
+//! Texts on the steps of a run: before, during and after it.
 
-use super::prepared::{Prepared, Way};
+use super::prepared::{Prepared, SolutionMethod};
 use bearing_dynamics::motion::bonded_bushing::{BondedBushing, BondedRubber};
 use bearing_dynamics::motion::coupling::Exchange;
 use bearing_dynamics::motion::explicit_solid::SteppedSolid;
@@ -12,7 +12,7 @@ use bearing_dynamics::output::state::StateFile;
 use bearing_dynamics::solids::explicit::ExplicitSolid;
 use bearing_dynamics::solids::rubber::steps::Stepping;
 
-/// Step, its reason, how many there will be, and where it goes on from.
+/// Time step, its limit, the number of steps, and the time of a resumed state.
 pub(super) fn announcement(
     session: &Session,
     prepared: &Prepared,
@@ -25,9 +25,9 @@ pub(super) fn announcement(
         (Motion::Bearing(simulation), prepared) => {
             let steps = of_bearing(simulation, clock, request, choice);
             match prepared {
-                Prepared::Bearings { housings, way: Way::Reduced(shapes), .. } => {
-                    shapes.text(housings) + &steps
-                }
+                Prepared::Bearings {
+                    housings, method: SolutionMethod::Reduced(shapes), ..
+                } => shapes.text(housings) + &steps,
                 _ => steps,
             }
         }
@@ -36,7 +36,9 @@ pub(super) fn announcement(
         (Motion::Housed(housed), _) => of_housed(housed, clock, request),
         (
             Motion::QuasiStaticSequence(_),
-            Prepared::Bearings { way: Way::QuasiStaticSequence(bores, seconds), .. },
+            Prepared::Bearings {
+                method: SolutionMethod::QuasiStaticSequence(bores, seconds), ..
+            },
         ) => {
             let unknowns: usize = bores.iter().map(|bore| bore.sizes.unknowns).sum();
             let kept: usize = bores.iter().map(|bore| bore.sizes.kept).sum();
@@ -67,7 +69,7 @@ fn of_bearing(
     if let BearingStepping::Accuracy(accuracy) = request.options.stepping {
         let by_plan = choice.map_or(String::new(), |choice| format!("chosen: {}\n", choice.reason));
         return format!(
-            "{integrator}, accuracy {accuracy}: steps follow from it, the first of {:.4e} s\n\
+            "{integrator}, accuracy {accuracy}: adaptive steps, the first of {:.4e} s\n\
              to t = {} s, a row every {:.4e} s\n{by_plan}",
             simulation.step_size, clock.end, clock.interval
         );
@@ -99,12 +101,12 @@ fn of_solid(solid: &ExplicitSolid, clock: &Clock) -> String {
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
     let steps = clock.last.unwrap_or(0);
     format!(
-        "step {:.4e} s, {:.3} of the stability limit {:.4e} s{}; the fastest element, {}, lies at x {x:.3}, \
+        "step {:.4e} s, {:.3} of the stability limit {:.4e} s{}; the limiting element, {}, is at x {x:.3}, \
          y {y:.3}, z {z:.3} mm\n{steps} steps to t = {} s, {}, fields every {} rows\n",
         clock.step,
         clock.step / limit.step,
         limit.step,
-        if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" },
+        if limit.is_bound { " (a safe bound: the iteration did not converge)" } else { "" },
         solid.model.labels.element(limit.element),
         rounded(steps as f64 * clock.step),
         rows(clock, "steps"),
@@ -114,12 +116,12 @@ fn of_solid(solid: &ExplicitSolid, clock: &Clock) -> String {
 
 fn of_rubber(moving: &MovingRubber, clock: &Clock) -> String {
     let steps = match moving.stepping {
-        Stepping::Accuracy(accuracy) => format!("accuracy {accuracy}: steps follow from it"),
+        Stepping::Accuracy(accuracy) => format!("accuracy {accuracy}: adaptive steps"),
         Stepping::Fixed(step) => format!("steps of {step:.4e} s"),
     };
     let rows = clock.last.unwrap_or(0);
     format!(
-        "implicit, {steps}, one a row at least; {} unknowns\nto t = {} s, a row every {:.4e} s, fields every {} rows\n",
+        "implicit, {steps}, at least one a row; {} unknowns\nto t = {} s, a row every {:.4e} s, fields every {} rows\n",
         moving.solid.model().unknowns.count,
         rounded(rows as f64 * clock.interval),
         clock.interval,
@@ -128,35 +130,35 @@ fn of_rubber(moving: &MovingRubber, clock: &Clock) -> String {
 }
 
 fn of_housed(housed: &Exchange, clock: &Clock, request: &RunRequest) -> String {
-    let windows = clock.last.unwrap_or(0);
+    let coupling_steps = clock.last.unwrap_or(0);
     let by_accuracy = match request.options.stepping {
         BearingStepping::Accuracy(accuracy) => format!(
-            "{}, accuracy {accuracy}: the bearing's steps follow from it, windows and the steps of solids do not\n",
+            "{}, accuracy {accuracy}: adaptive steps of the bearing; coupling steps and the steps of solids are fixed\n",
             request.options.integrator.name()
         ),
         _ => String::new(),
     };
-    let mut solids: Vec<String> = housed.solids.iter().map(of_solid_in_window).collect();
-    solids.extend(housed.bushings.iter().map(of_bushing_in_window));
-    let seats: String = housed
+    let mut solids: Vec<String> = housed.solids.iter().map(of_solid_in_coupling_step).collect();
+    solids.extend(housed.bushings.iter().map(of_bushing_in_coupling_step));
+    let fits: String = housed
         .seats()
-        .map(|seat| {
-            let (tested, out_of_reach) = seat.counts();
-            let of = seat.seat.suffix();
-            format!("{tested} bore nodes{of} in reach, {out_of_reach} out of it\n")
+        .map(|fit| {
+            let (tested, out_of_reach) = fit.counts();
+            let of = fit.seat.suffix();
+            format!("{tested} bore nodes{of} near the race, {out_of_reach} too far for contact\n")
         })
         .collect();
     format!(
-        "window {:.4e} s, {}; bearing steps up to {:.4e} s\n{by_accuracy}{seats}{windows} windows to t = {} s, {}\n",
+        "coupling step {:.4e} s, {}; bearing steps up to {:.4e} s\n{by_accuracy}{fits}{coupling_steps} coupling steps to t = {} s, {}\n",
         housed.window,
         solids.join("; "),
         housed.simulation.step_size,
-        rounded(windows as f64 * housed.window),
-        rows(clock, "windows")
+        rounded(coupling_steps as f64 * housed.window),
+        rows(clock, "coupling steps")
     )
 }
 
-fn of_solid_in_window(part: &SteppedSolid) -> String {
+fn of_solid_in_coupling_step(part: &SteppedSolid) -> String {
     let limit = &part.solid.limit;
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
     let steps = match part.steps {
@@ -167,14 +169,14 @@ fn of_solid_in_window(part: &SteppedSolid) -> String {
     let what = part.kind();
     let of = if of.strip_prefix(' ') == Some(what) { String::new() } else { of };
     format!(
-        "{steps} of the {what}{of} in it; limit of the {what} {:.4e} s, its fastest element, {}, at x {x:.3}, \
+        "{steps} of the {what}{of} in it; limit of the {what} {:.4e} s, its limiting element, {}, at x {x:.3}, \
          y {y:.3}, z {z:.3} mm",
         limit.step,
         part.solid.model.labels.element(limit.element),
     )
 }
 
-fn of_bushing_in_window(bushing: &BondedBushing) -> String {
+fn of_bushing_in_coupling_step(bushing: &BondedBushing) -> String {
     let steps = match bushing.steps {
         1 => "one step".into(),
         count => format!("{count} steps"),
@@ -194,40 +196,37 @@ fn of_bushing_in_window(bushing: &BondedBushing) -> String {
     }
 }
 
-/// How far rows are apart, and how far they were to be.
+/// Output interval, and the requested one if it was rounded.
 fn rows(clock: &Clock, of: &str) -> String {
     let (interval, asked) = (clock.row_interval(), clock.interval);
     let off = if (interval / asked - 1.0).abs() > 1e-9 {
-        format!(" ({asked} s asked for, rounded to whole {of})")
+        format!(" ({asked} s requested, rounded to whole {of})")
     } else {
         String::new()
     };
     format!("a row every {} {of} = {interval:.4e} s{off}", clock.steps_per_row)
 }
 
-/// What a run counts.
 fn step_name(session: &Session) -> &'static str {
     match session.motion {
         Motion::Bearing(_) | Motion::Solid(_) => "step",
-        Motion::Housed(_) => "window",
+        Motion::Housed(_) => "coupling step",
         Motion::QuasiStaticSequence(_) => "equilibrium",
         Motion::Rubber(_) => "row",
     }
 }
 
-/// Where a run stands.
 pub(super) fn place(session: &Session) -> String {
     let (time, done) = (rounded(session.motion.time()), session.motion.done());
     let counted = match session.motion {
         Motion::Bearing(_) | Motion::Solid(_) => "steps",
-        Motion::Housed(_) => "windows",
+        Motion::Housed(_) => "coupling steps",
         Motion::QuasiStaticSequence(_) => "equilibria",
         Motion::Rubber(_) => "rows",
     };
     format!("t = {time} s of {} s, after {done} {counted}", session.clock.end)
 }
 
-/// The same beside a bar.
 pub(super) fn progress(session: &Session) -> String {
     let (time, end) = (session.motion.time(), session.clock.end);
     let name = step_name(session);

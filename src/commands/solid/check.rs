@@ -1,4 +1,4 @@
-//! `bearing check` of a solid: mesh, sets, supports and loads as understood.
+//! `bearing check` of a solid: mesh, sets, supports and loads.
 
 use super::{echo, mesh_notes, prepare};
 use crate::commands::check::{Line, say_json, say_lines};
@@ -20,14 +20,14 @@ use bearing_dynamics::solids::support::FreeMotions;
 use serde_json::json;
 use std::error::Error;
 
-/// What is looked at, of whatever the solid is made.
 struct Facts {
     built: BuiltMesh,
     free: FreeMotions,
-    held: usize,
-    /// kg.
+    /// Number of fixed components.
+    fixed: usize,
+    /// Mass, kg.
     mass: f64,
-    /// At t = 0, N.
+    /// Total load at t = 0, N.
     loads: Vec3,
     law: Vec<(&'static str, String)>,
 }
@@ -58,7 +58,7 @@ pub fn run(
 
 impl Facts {
     fn lines(self, line: &mut Line) {
-        let Facts { built, free, held, mass, loads, law } = self;
+        let Facts { built, free, fixed, mass, loads, law } = self;
         let (mesh, quality) = (&built.mesh, &built.quality);
         let nodes_each = if mesh.order() == Order::Linear { 4 } else { 10 };
         line(
@@ -89,7 +89,7 @@ impl Facts {
             .map(|(name, nodes)| format!("{name} ({})", nodes.len()))
             .collect();
         line("sets (nodes)", if sets.is_empty() { "none".into() } else { sets.join(", ") });
-        line("held components", held.to_string());
+        line("fixed components", fixed.to_string());
         line(
             "free motions",
             match free.count {
@@ -113,7 +113,7 @@ fn elastic(document: &Document, scene: &SolidScene) -> Result<Facts, Box<dyn Err
     model.add_external_forces(model.acting(), 0.0, &mut forces, &mut Counts::default());
     let forces: Vec<Vec3> = forces.iter().map(|f| [f[0], f[1], f[2]]).collect();
     Ok(Facts {
-        held: model.problem.prescribed.len(),
+        fixed: model.problem.prescribed.len(),
         mass: model.mass.iter().sum(),
         loads: total(&forces),
         built: prepared.built,
@@ -131,8 +131,8 @@ fn of_rubber(
     let mut forces = vec![[0.0; 3]; setup.model.problem.nodes.len()];
     setup.model.add_loads(Moment::at(0.0), &mut forces);
     let (network, terms) = (&rubber.material.network, rubber.material.maxwell.len());
-    let said = format!(
-        "C_R {} MPa, N {}, bulk modulus {} MPa; shear modulus {:.4} MPa relaxed, {:.4} MPa at once; {terms} Maxwell \
+    let text = format!(
+        "C_R {} MPa, N {}, bulk modulus {} MPa; shear modulus {:.4} MPa relaxed, {:.4} MPa instantaneous; {terms} Maxwell \
          elements",
         to_digits(1e-6 * network.modulus, 6),
         network.locking,
@@ -140,14 +140,14 @@ fn of_rubber(
         1e-6 * network.shear_modulus(),
         1e-6 * rubber.material.instantaneous_shear_modulus(),
     );
-    let mut law = vec![("rubber", said)];
+    let mut law = vec![("rubber", text)];
     if let Some(asked) = &rubber.harmonic {
         vibrating(&setup, asked).map_err(|error| placed(document, Some(error.about()), error))?;
         let count = asked.frequencies.len();
         law.push(("small vibrations", format!("{} at {count} frequencies", asked.set)));
     }
     Ok(Facts {
-        held: setup.model.problem.prescribed.len(),
+        fixed: setup.model.problem.prescribed.len(),
         mass: setup.density * built.quality.total_volume,
         loads: total(&forces),
         built,

@@ -1,4 +1,4 @@
-//! What was understood of a solid, as JSON with units.
+//! The resolved solid as JSON with units.
 
 use crate::commands::echo::head;
 use crate::commands::echo_run::profile;
@@ -26,13 +26,12 @@ type Echo = Result<Value, ResultsError>;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The resolved scene, every dimensional value with its unit.
 pub fn scene(scene: &SolidScene) -> Echo {
     let mut echo = head(&scene.title, &scene.source);
-    let held: Result<Vec<Value>, ResultsError> = scene
+    let fixed: Result<Vec<Value>, ResultsError> = scene
         .held
         .iter()
-        .map(|held| Ok(merged(json!({ "set": held.set }), along_axes(&held.motion, "m")?)))
+        .map(|support| Ok(merged(json!({ "set": support.set }), along_axes(&support.motion, "m")?)))
         .collect();
     let loads: Result<Vec<Value>, ResultsError> = scene
         .loads
@@ -68,7 +67,7 @@ pub fn scene(scene: &SolidScene) -> Echo {
             "gravity": vector(&scene.gravity, "m/s^2")?,
             "velocity": vector(&scene.velocity, "m/s")?,
             "spin": quantity("spin", scene.spin, "rad/s")?,
-            "held": held?,
+            "held": fixed?,
             "load": loads?,
             "probe": probes?,
         }),
@@ -133,7 +132,7 @@ fn material(scene: &SolidScene) -> Echo {
     Ok(echo)
 }
 
-/// A network and its Maxwell elements, by a table of the source or none.
+/// Rubber network and its Maxwell elements; `table` is that of the source, if any.
 pub fn rubber(material: &Elastomer, table: Option<&str>) -> Echo {
     let network = &material.network;
     let mut maxwell = Vec::new();
@@ -155,7 +154,6 @@ pub fn rubber(material: &Elastomer, table: Option<&str>) -> Echo {
     }))
 }
 
-/// LinearSystem that are asked for.
 fn harmonic(asked: &Harmonic) -> Echo {
     let frequencies = asked.frequencies.iter().map(|f| quantity("frequency", *f, "Hz"));
     let frequencies: Vec<Value> = frequencies.collect::<Result<_, _>>()?;
@@ -190,14 +188,14 @@ fn numerics(run: &SolidRun) -> Echo {
     Ok(echo)
 }
 
-/// Where the mesh comes from; its numbers are in the summary's own part.
+/// Source and settings of the mesh; its size is in a section of its own.
 fn mesh(scene: &SolidScene) -> Echo {
     let request = &scene.mesh;
     let mut echo = source(&request.source)?;
     if let Some(order) = request.order {
         echo["order"] = json!(if order == Order::Linear { 1 } else { 2 });
     }
-    // Where a bearing sits on the axis comes to the place of a housing's mesh.
+    // The axial position of a bearing is added to the place of its housing's mesh.
     echo["origin"] = vector(&request.place.origin, "m")?;
     echo["axis"] = json!(["x", "y", "z"][request.place.axis]);
     echo["renumber"] = json!(request.renumber);
@@ -327,7 +325,6 @@ fn pillow_block(block: &PillowBlock) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// Cells of a body with a bore.
 fn around(around: usize, radial: usize, axial: usize, growth: f64) -> Value {
     json!({ "around": around, "radial": radial, "axial": axial, "growth": growth })
 }

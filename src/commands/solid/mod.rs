@@ -1,4 +1,4 @@
-//! The commands on a scene with a solid by itself; here what they share.
+//! Commands on a scene with a single solid, and the functions that they share.
 
 pub mod check;
 pub mod echo;
@@ -17,7 +17,6 @@ use bearing_dynamics::solids::support::{FreeMotions, free_motions};
 use std::error::Error;
 use std::time::Instant;
 
-/// A scene with its mesh, ready to be solved.
 pub struct Prepared<S = SolidSetup> {
     pub built: BuiltMesh,
     pub setup: S,
@@ -25,7 +24,7 @@ pub struct Prepared<S = SolidSetup> {
     pub mesh_seconds: f64,
 }
 
-/// Reads or makes the mesh; the document says where in the scene an error stands.
+/// Reads or generates the mesh. The document locates errors in the scene.
 pub fn prepare(document: &Document, scene: &SolidScene) -> Result<Prepared, Box<dyn Error>> {
     let of = |SolidSetup { notes, problem, .. }: &SolidSetup| {
         (notes.clone(), free_motions(&problem.nodes, &problem.prescribed))
@@ -33,7 +32,7 @@ pub fn prepare(document: &Document, scene: &SolidScene) -> Result<Prepared, Box<
     prepared(document, scene, |built| setup(scene, built), of)
 }
 
-/// With what is set up on the mesh, the notes of that, and how the body is free to move.
+/// Builds the mesh and a setup on it; `of` returns the notes of the setup and its free rigid-body motions.
 pub fn prepared<S>(
     document: &Document,
     scene: &SolidScene,
@@ -48,7 +47,7 @@ pub fn prepared<S>(
     Ok(Prepared { built, setup, free, mesh_seconds: start.elapsed().as_secs_f64() })
 }
 
-/// What was repaired as asked, and what a person should know about the file.
+/// Notes on requested repairs and on the mesh file.
 pub fn mesh_notes(built: &BuiltMesh) -> Vec<String> {
     let repaired = &built.repaired;
     let done = (*repaired != Repaired::default()).then(|| {
@@ -60,18 +59,17 @@ pub fn mesh_notes(built: &BuiltMesh) -> Vec<String> {
     done.into_iter().chain(built.notes.iter().cloned()).collect()
 }
 
-/// Says these before results.
 pub fn say_mesh_notes(built: &BuiltMesh) -> Result<(), Box<dyn Error>> {
     mesh_notes(built).iter().try_for_each(|note| say(&format!("note: {note}\n")))
 }
 
 pub fn title(scene: &SolidScene) -> String {
     let title = scene.title.clone().unwrap_or_else(|| "Solid".into());
-    // Its forces are read off pictures.
+    // Its forces are those of a quarter.
     if scene.mesh.is_quarter() { format!("{title} (a quarter)") } else { title }
 }
 
-/// Scene, assumptions, defaults and plan, as every summary has them.
+/// Scene, assumptions, defaults and plan for the summary.
 pub fn record(
     scene: &SolidScene,
     plan: Vec<Item>,

@@ -24,7 +24,7 @@ use std::time::Instant;
 pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     if let Law::Elastomer(_) = &scene.law {
         return Err(format!(
-            "{}: {NO_MODES}; [solid.harmonic] asks `bearing statics` for its answer to vibrations",
+            "{}: {NO_MODES}; with [solid.harmonic] `bearing statics` computes its response to vibrations",
             asked.path.display()
         )
         .into());
@@ -50,9 +50,9 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     say_mesh_notes(built)?;
     let mut text = "mode        frequency, Hz\n".to_string();
     for (index, mode) in found.modes.iter().enumerate() {
-        // What moves a body as a whole meets no stiffness: its frequency is zero but for rounding.
+        // Rigid-body modes come first.
         let rigid = if index < prepared.free.count {
-            "  rigid-body motion, zero but for rounding"
+            "  rigid-body mode, zero except for rounding"
         } else {
             ""
         };

@@ -1,4 +1,4 @@
-//! `bearing plan` of a solid: what each of its commands would do.
+//! `bearing plan` of a solid: stages of each command.
 
 use super::{Prepared, mesh_notes, prepare};
 use crate::commands::plan::say_plan;
@@ -25,7 +25,7 @@ pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     }
     let prepared = prepare(document, scene)?;
     let mut lines: Vec<String> =
-        mesh_notes(&prepared.built).iter().map(|said| note("mesh", said)).collect();
+        mesh_notes(&prepared.built).iter().map(|text| note("mesh", text)).collect();
     let model =
         SolidModel::labelled(prepared.setup.problem.clone(), prepared.setup.labels.clone())?;
     lines.extend(memory_lines(scene, &prepared, &model));
@@ -39,14 +39,13 @@ pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-/// How many files of fields there will be, and how large they are.
 pub fn fields_line(run: &SolidRun, mesh: &TetMesh) -> String {
     let bytes = file_bytes(mesh, false);
     let size = fields_size(run.end, run.output_interval, Some(run.fields_interval), &[bytes]);
     note("fields", &size.to_string())
 }
 
-/// The step of a run, what limits it, and how many there are; as the run finds them.
+/// Time step of a run, its limit, and the number of steps, as in the run.
 fn step_line(
     model: &SolidModel,
     (method, stepping): (ExplicitMethod, SolidStepping),
@@ -58,17 +57,16 @@ fn step_line(
     let (step, _) = stepping.divide(interval, limit.step);
     let ratio = step / limit.step;
     let [x, y, z] = limit.at.map(|at| 1e3 * at);
-    let bound =
-        if limit.is_bound { " (a safe bound: the search for it did not settle)" } else { "" };
+    let bound = if limit.is_bound { " (a safe bound: the iteration did not converge)" } else { "" };
     let (name, verdict) = match stepping {
         SolidStepping::Fixed(_) if ratio > 1.0 => {
-            ("given step", ": WARNING: too long, the run will be refused")
+            ("given step", ": too long, the run will be refused")
         }
         SolidStepping::Fixed(_) => ("given step", ""),
         SolidStepping::FractionOfLimit(_) => ("step", ""),
     };
-    let said = format!(
-        "{:.3e} s is {ratio:.3} of the stability limit {:.3e} s{bound}{verdict}; the fastest element \
+    let text = format!(
+        "{:.3e} s is {ratio:.3} of the stability limit {:.3e} s{bound}{verdict}; the limiting element \
          is {} at x {x:.3}, y {y:.3}, z {z:.3} mm; {} steps to t = {} s",
         step,
         limit.step,
@@ -76,10 +74,10 @@ fn step_line(
         whole_number(end, step),
         end
     );
-    note(name, &said)
+    note(name, &text)
 }
 
-/// Memory of what takes factors of the stiffness, from its structure alone.
+/// Memory of the methods that factorise the stiffness, from its structure alone.
 fn memory_lines(scene: &SolidScene, prepared: &Prepared, model: &SolidModel) -> Vec<String> {
     let unknowns = Unknowns::new(model);
     let statics = (prepared.free.count == 0).then(|| needed::statics(&unknowns));
@@ -88,7 +86,6 @@ fn memory_lines(scene: &SolidScene, prepared: &Prepared, model: &SolidModel) -> 
     statics.into_iter().chain([modes]).map(line).collect()
 }
 
-/// What a command does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
     Statics,
@@ -96,7 +93,6 @@ pub enum Of {
     Run,
 }
 
-/// Items of one command.
 pub fn items(scene: &SolidScene, prepared: &Prepared, of: Of) -> Vec<Item> {
     let (problem, mesh) = (&prepared.setup.problem, &prepared.built.mesh);
     let kind = match mesh.order() {
@@ -124,7 +120,7 @@ pub fn items(scene: &SolidScene, prepared: &Prepared, of: Of) -> Vec<Item> {
     items
 }
 
-/// Where so many elements of a kind come from.
+/// Source, number and kind of the elements.
 pub fn from(scene: &SolidScene, count: usize, kind: &str) -> String {
     let from = match &scene.mesh.source {
         MeshSource::File { name, .. } => format!("from {name}"),
@@ -142,11 +138,11 @@ fn modes(scene: &SolidScene) -> Item {
     Item::does(Stage::Modes, Subject::Solid(0), wanted)
 }
 
-/// Items of a run, or of statics of what has none, and in a line each what the other commands would do.
+/// Items of a run, or of statics without one, and one item for each other command.
 fn all_items(scene: &SolidScene, prepared: &Prepared) -> Vec<Item> {
     let subject = Subject::Solid(0);
-    let held = prepared.free.count == 0;
-    let of = match (&scene.run, held) {
+    let supported = prepared.free.count == 0;
+    let of = match (&scene.run, supported) {
         (Some(_), _) => Of::Run,
         (None, true) => Of::Statics,
         (None, false) => Of::Modes,
@@ -154,8 +150,8 @@ fn all_items(scene: &SolidScene, prepared: &Prepared) -> Vec<Item> {
     let mut items = items(scene, prepared, of);
     if of != Of::Statics {
         let free = format!("free to move {}", prepared.free.names());
-        let why = if held { "Newton's method, sparse Cholesky factors" } else { &free };
-        items.push(Item::new(Stage::SolidStatics, subject, held, why));
+        let why = if supported { "Newton's method, sparse Cholesky factors" } else { &free };
+        items.push(Item::new(Stage::SolidStatics, subject, supported, why));
     }
     if of != Of::Modes {
         items.push(modes(scene));

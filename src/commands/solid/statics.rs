@@ -25,7 +25,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// What needs no factors.
+/// Alternative without matrix factors.
 const INSTEAD: &str = ", explicit steps with damping until the body rests (`bearing run`)";
 
 pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
@@ -37,8 +37,8 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     let Prepared { built, setup, free, mesh_seconds } = &prepared;
     if free.count > 0 {
         return Err(format!(
-            "{}: statics needs a body that is held, and this one is free to move {}; add \
-             [[solid.fixed]], or let it move with `bearing run`",
+            "{}: the body is free to move {}, and statics needs supports; add [[solid.fixed]], or \
+             use `bearing run`",
             asked.path.display(),
             free.names()
         )
@@ -75,11 +75,11 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-/// Files of [`write`].
+/// Number of files of [`write`].
 pub const WRITTEN: usize = 5;
 
-/// Fields and tables of an equilibrium in place of earlier ones. A summary comes last: it says that a folder is
-/// complete.
+/// Writes fields and tables of an equilibrium over earlier ones. The summary is written last, because it marks a
+/// folder as complete.
 pub fn write(
     folder: &Path,
     mesh: &TetMesh,
@@ -95,7 +95,7 @@ pub fn write(
     Ok(series.write_npy(&folder.join("series.npy"))?)
 }
 
-/// What a person wants to see first.
+/// Printed table of loads, reactions and largest values.
 pub fn table(summary: &Value) -> String {
     let number = |at: &Value| at["value"].as_f64().unwrap_or(f64::NAN);
     let axes = |at: &Value, scale: f64| {
