@@ -1,11 +1,11 @@
-//! Frequencies of a rotor over its speed, with the line on which they meet once a turn.
+//! Campbell diagram: whirl frequencies of a rotor over its speed.
 
 use super::xy::{Axis, Style, XyPlot, xy};
 use super::{Curve, PlotError};
 use crate::vibrations::whirl::Campbell;
 use std::f64::consts::TAU;
 
-/// Campbell diagram in Hz over rpm, with the critical speeds (rad/s) up to its end. How a line turns is told at its last speed.
+/// Campbell diagram in Hz over rpm, with the critical speeds (rad/s). The legend gives the whirl direction at the last speed.
 ///
 /// # Errors
 /// As [`xy`].
@@ -14,7 +14,7 @@ pub fn campbell(title: &str, of: &Campbell, critical: &[f64]) -> Result<String, 
     let mut highest = 0.0f64;
     let mut curves: Vec<Curve> = Vec::new();
     for (number, line) in of.lines.iter().enumerate() {
-        // Down to where it swings no more.
+        // The line ends at the lowest speed at which it oscillates.
         let points = of.speeds[of.speeds.len() - line.len()..].iter().zip(line);
         let points: Vec<[f64; 2]> =
             points.map(|(&speed, whirl)| [rpm(speed), whirl.frequency() / TAU]).collect();
