@@ -1,4 +1,4 @@
-//! Columns of a solid by itself: its ledger, largest values, probes and reactions.
+//! Columns of a single solid: its energy balance, largest values, probes and reactions.
 
 use super::Recorder;
 use crate::kinematics::vec3::Vec3;
@@ -36,10 +36,10 @@ pub fn probe_columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column>
 }
 
 impl Recorder {
-    /// Adds a row of a solid by itself.
+    /// Adds a row of a single solid.
     ///
     /// # Errors
-    /// A value that is not finite, an inverted element, a ledger that does not close.
+    /// A value that is not finite, an inverted element, an energy balance that does not close.
     pub(in crate::output) fn record_solid(
         &mut self,
         solid: &mut ExplicitSolid,
@@ -89,8 +89,7 @@ pub(super) fn check_finite(
     }
 }
 
-/// Forces of the supports on the nodes at the time of the last ledger, N; zero on free
-/// components.
+/// Support forces on the nodes at the time of the last energy balance, N; zero on free components.
 fn reactions(solid: &ExplicitSolid) -> Vec<Vec3> {
     let (model, forces) = (&solid.model, solid.forces());
     let mut reactions = vec![[0.0; 3]; forces.len()];
