@@ -49,17 +49,17 @@ const ALIGNED: usize = 64;
 /// ```
 pub fn file(table: &Array2<f64>) -> Vec<u8> {
     let (rows, columns) = table.dim();
-    let says =
+    let header =
         format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
     let start = b"\x93NUMPY\x01\x00";
     let before = start.len() + size_of::<u16>();
     // The header is padded with blanks and ends with a line break.
-    let length = (before + says.len() + 1).next_multiple_of(ALIGNED) - before;
+    let length = (before + header.len() + 1).next_multiple_of(ALIGNED) - before;
     let mut bytes = Vec::with_capacity(before + length + 8 * table.len());
     bytes.extend_from_slice(start);
     // The shape has two numbers of at most twenty digits, so the length fits into u16.
     bytes.extend((length as u16).to_le_bytes());
-    bytes.extend(format!("{says:<0$}\n", length - 1).bytes());
+    bytes.extend(format!("{header:<0$}\n", length - 1).bytes());
     for value in table {
         bytes.extend_from_slice(&value.to_le_bytes());
     }

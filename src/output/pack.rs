@@ -213,24 +213,25 @@ fn ignored(reason: &str) -> ChannelTolerance {
 
 fn readme(input: &PackInput) -> String {
     format!(
-        "Case pack: a bearing, and the results to hold another implementation against.
+        "Case pack: a bearing, and the expected results for checking another implementation.
 
-1. Solve {scene} with your program (resolved.json has the same with every value and its unit, defaults filled in).
-2. Write summary.json and series.csv of the same form into a folder, say candidate (series.npy
-   with series.columns.json holds the same table once more and may be left out).
+1. Solve {scene} with your program (resolved.json has the same scene with all units and defaults).
+2. Write summary.json and series.csv in the same format into a folder, say candidate (series.npy
+   and series.columns.json hold the same table and are optional).
    Copy the parts of summary.json that only repeat the input (scene, assumptions).
 3. Run, from the folder that holds this one:
 
        bearing compare pack/ candidate/
 
    (with the name of this folder for pack/). Exit code 0: equal within tolerance; 1: different,
-   with the first place where it departs; 2: a file could not be read.
+   with the first difference; 2: a file could not be read.
 
-The tolerance class is {class}; tolerances.json says where another one holds, and may be edited
-per channel. manifest.json has the sha256 of every file as it was written. Wall time, number of
-threads, versions and the program's name are not compared. Where a ball carries nothing in both
+The tolerance class is {class}; tolerances.json lists the exceptions and may be edited
+per channel. manifest.json has the sha256 of every file. Wall time, number of
+threads, versions and the program's name are not compared. If a ball has no load in both
 contacts of the reference, its position, approaches (gaps) and contact angles are not compared
-either (class f64-exact excepted): no law says where in its room such a ball is. Angles are in degrees, all else in SI units, as the headers say.
+either (except in class f64-exact), because they are not determined. Angles are in degrees, all other
+quantities in SI units, as in the headers.
 ",
         scene = input.scene_name,
         class = input.class.name(),

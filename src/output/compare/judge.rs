@@ -309,7 +309,7 @@ impl<'a> Judge<'a> {
             let Some(other) = found.get(leaf.path.as_str()) else {
                 if is_default_of_key(channel) {
                     self.leave_out(&format!(
-                        "{channel}, a default where the candidate's scene says it"
+                        "{channel}, default of a key that the candidate's scene sets"
                     ));
                     continue;
                 }

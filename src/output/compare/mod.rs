@@ -306,7 +306,7 @@ fn common_folders(reference: &Path, candidate: &Path) -> Result<[Vec<String>; 2]
             let is_other_form = name.ends_with(".npy") && is_given_as_csv(&candidate.join(name));
             !of_reference.contains(name) && !is_other_form
         };
-        let more = of_candidate.iter().filter(is_new).map(|name| format!("{name}: all of it"));
+        let more = of_candidate.iter().filter(is_new).map(|name| format!("{name}: whole file"));
         let more = more.collect();
         return Ok([of_reference, more]);
     }

@@ -32,7 +32,7 @@ fn equal(text: &mut String, comparison: &Comparison) {
         line(
             text,
             format!(
-                "closest to its limit: {}, {} at {}, {:.2} of what is allowed ({})",
+                "largest difference relative to tolerance: {}, {} at {}, {:.2} of the tolerance ({})",
                 channel.file,
                 name(&channel.channel, &channel.unit),
                 worst.place,
@@ -75,7 +75,7 @@ fn different(text: &mut String, comparison: &Comparison, first: &Divergence) {
         if let Some(worst) = channel.worst.as_ref().filter(|worst| worst.ratio > 0.0) {
             let _ = write!(
                 row,
-                ", worst {:e} against {:e} allowed at {}",
+                ", largest {:e}, allowed {:e}, at {}",
                 worst.difference, worst.allowed, worst.place
             );
         }
@@ -212,7 +212,7 @@ fn list(text: &mut String, title: &str, items: &[String]) {
     }
     line(text, row);
     if items.len() > LISTED {
-        line(text, format!("  and {} more, in the form of --json", items.len() - LISTED));
+        line(text, format!("  and {} more, see --json", items.len() - LISTED));
     }
 }
 

@@ -225,15 +225,15 @@ pub enum ToleranceError {
     Json { path: PathBuf, source: serde_json::Error },
     #[error("tolerance of {channel:?}: {number} is {value}; allowed are finite numbers >= 0")]
     Number { channel: String, number: &'static str, value: f64 },
-    #[error("tolerance of {channel:?} says \"ignored\" and gives numbers; only one can hold")]
+    #[error("tolerance of {channel:?} has class \"ignored\" and numbers; write one of them")]
     IgnoredWithNumbers { channel: String },
     #[error("a default class of \"ignored\" would compare nothing")]
     IgnoredByDefault,
-    #[error("tolerances name {channel:?}, which is no channel of the reference")]
+    #[error("tolerances name {channel:?}, which is not a channel of the reference")]
     Unused { channel: String },
     #[error(
-        "an absolute tolerance is given for the unit {unit:?}, which no compared channel has; there \
-         are: {}", known.join(", ")
+        "no compared channel has the unit {unit:?} of an absolute tolerance; \
+         units are: {}", known.join(", ")
     )]
     UnusedUnit { unit: String, known: Vec<String> },
 }

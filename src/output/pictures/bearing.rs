@@ -89,7 +89,7 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
             ("ball_1_pocket_load", "ball 1 in its pocket"),
             ("cage_guide_load", "cage on its guide"),
         ];
-        let loads = loads.map(|(channel, said)| (format!("{prefix}{channel}"), said));
+        let loads = loads.map(|(channel, name)| (format!("{prefix}{channel}"), name));
         let loads = loads.each_ref().map(|(channel, said)| (channel.as_str(), *said));
         let curves = over_time(table, &loads, 1.0);
         let heading = format!("{title}: {}loads", prefix.replace('_', " "));
@@ -105,7 +105,7 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     let residuals =
         [("energy_coupled_residual", "of all parts"), ("energy_residual", "of bearings")];
     let curves = over_time(table, &residuals, 1.0);
-    let heading = format!("{title}: energy unaccounted for");
+    let heading = format!("{title}: energy residual");
     add_series(&mut drawn, "series_energy.svg".into(), heading, "energy", "J", curves)?;
     let names = table.works();
     let works: Vec<(&str, &str)> =
@@ -148,7 +148,7 @@ fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
         let svg = orbit(&OrbitPlot {
             title: format!("{title}: orbit of the {name}"),
             unit: "um".into(),
-            curves: vec![Curve::new(format!("{name}, marked where it ends"), points)],
+            curves: vec![Curve::new(format!("{name}, marker at the end"), points)],
         })?;
         drawn.push((format!("orbit_{}.svg", name.replace(' ', "_")), svg));
     }
