@@ -34,7 +34,7 @@ pub enum SessionError {
     #[error("the output interval is {0} s; it must be positive and finite")]
     Interval(f64),
     #[error(
-        "{size}, more than {most} GB: use a longer numerics.output_interval (at least {interval:.1e} s), a shorter \
+        "{size}, more than {most} GB: use a longer numerics.output_interval ({interval:.1e} s is enough), a shorter \
          numerics.end, or fewer output.channels",
         most = 8e-9 * size::MOST_VALUES,
         interval = size.shortest

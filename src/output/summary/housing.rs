@@ -16,7 +16,7 @@ use serde_json::{Map, Value, json};
 
 /// Note on the largest pressure of bore nodes. It differed by 24 % between two meshes of housings of 2.4.2 whose
 /// displacements differ by 0.7 %.
-pub const PEAK_PRESSURE: &str = "at a single node: it changes by tens of per cent with the mesh where displacements change by one";
+pub const PEAK_PRESSURE: &str = "from a single node; it can differ by tens of per cent between meshes whose displacements differ by 1 %";
 
 /// Fit, width and mesh, the shape of the bore, and a caution if the shape affects results.
 ///
