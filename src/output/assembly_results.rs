@@ -24,7 +24,7 @@ pub struct Solved<'s> {
 }
 
 /// Rounding error of a displacement (m) or tilt (rad) that is zero: 64 ulps of a pitch radius of 30 mm.
-const NOTHING: f64 = 4e-16;
+const ROUNDING: f64 = 4e-16;
 
 /// Solution in the scene's axes, also for reversed bearings: azimuth from +Y towards +Z, cage force positive towards
 /// larger azimuth. The x of races, balls and centres is measured from the position of their bearing in `moving`, the
@@ -43,7 +43,7 @@ pub fn readable(
             }
             _ => moving.origin_of(body),
         };
-        for coordinate in coordinates.iter_mut().filter(|q| q.abs() <= NOTHING) {
+        for coordinate in coordinates.iter_mut().filter(|q| q.abs() <= ROUNDING) {
             *coordinate = 0.0;
         }
     }

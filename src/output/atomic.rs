@@ -68,14 +68,14 @@ pub fn remove_partials(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let Some(process) = writer_of(&name.to_string_lossy()) else { continue };
-        let gone = if listed {
+        let has_ended = if listed {
             !Path::new(&format!("/proc/{process}")).exists()
         } else {
             let written = entry.metadata().and_then(|data| data.modified()).ok();
             let age = written.and_then(|time| time.elapsed().ok());
             process != std::process::id() && age.is_some_and(|age| age.as_secs() > 3600)
         };
-        if gone {
+        if has_ended {
             let _ = fs::remove_file(entry.path());
         }
     }

@@ -274,7 +274,7 @@ pub(super) fn place_and_loads(
     loads: &SVector<f64, 5>,
 ) -> Result<Value, ResultsError> {
     let mut position = Map::new();
-    let mut held = Map::new();
+    let mut load_entries = Map::new();
     for (index, name) in COORDINATE_NAMES.iter().enumerate() {
         let coordinate = coordinates[index];
         let (given, unit, load_unit) = match index < 3 {
@@ -282,9 +282,9 @@ pub(super) fn place_and_loads(
             false => (coordinate.to_degrees(), "deg", "N m"),
         };
         position.insert(name.to_string(), quantity(name, given, unit)?);
-        held.insert(name.to_string(), quantity(name, loads[index], load_unit)?);
+        load_entries.insert(name.to_string(), quantity(name, loads[index], load_unit)?);
     }
-    Ok(json!({ "position": position, "loads": held }))
+    Ok(json!({ "position": position, "loads": load_entries }))
 }
 
 /// Stiffness matrix. Row: load; column: coordinate of differentiation.

@@ -17,7 +17,6 @@
 //!
 //! Runs of different accuracy are compared with a [`GivenTolerance`]. Channels on the time stepping are then not
 //! compared: see [`is_about_steps`].
-//! computed is left out as well: see [`is_about_steps`].
 pub mod channels;
 mod judge;
 pub mod report;
@@ -214,9 +213,9 @@ pub fn compare(
     }
     let mut only_in_candidate = Vec::new();
     let pairs = if reference.is_dir() && candidate.is_dir() {
-        let beside = reference.join("tolerances.json");
-        if options.tolerances.is_none() && beside.exists() {
-            tolerances = Tolerances::read(&beside)?;
+        let default = reference.join("tolerances.json");
+        if options.tolerances.is_none() && default.exists() {
+            tolerances = Tolerances::read(&default)?;
         }
         refuse_other_kinds(reference, candidate)?;
         let named = |name: String| (reference.join(&name), candidate.join(&name), name);
@@ -279,9 +278,9 @@ fn refuse_other_kinds(reference: &Path, candidate: &Path) -> Result<(), CompareE
     let kind = |folder: &Path| {
         let summary = json::read(&folder.join("summary.json")).ok()?;
         let kind = summary["kind"].as_str()?;
-        let families: [(&str, &'static str); 3] =
+        let kinds: [(&str, &'static str); 3] =
             [("run", "a run"), ("static", "an equilibrium"), ("modes", "natural modes")];
-        families.into_iter().find(|(word, _)| kind.contains(word)).map(|(_, said)| said)
+        kinds.into_iter().find(|(word, _)| kind.contains(word)).map(|(_, name)| name)
     };
     match (kind(reference), kind(candidate)) {
         (Some(of_reference), Some(of_candidate)) if of_reference != of_candidate => {

@@ -31,8 +31,8 @@ pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<Bore
     match motion {
         Motion::Solid(_) | Motion::Rubber(_) => Vec::new(),
         Motion::Bearing(simulation) => seat_nodes(&simulation.system, solid),
-        Motion::QuasiStaticSequence(course) => {
-            match (&course.latest, course.problem.seats.get(solid)) {
+        Motion::QuasiStaticSequence(sequence) => {
+            match (&sequence.latest, sequence.problem.seats.get(solid)) {
                 (Some(moment), Some(seat)) => {
                     condensed_nodes(model, seat.bore, &moment.solution.seats[solid])
                 }

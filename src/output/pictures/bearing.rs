@@ -90,7 +90,7 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
             ("cage_guide_load", "cage on its guide"),
         ];
         let loads = loads.map(|(channel, name)| (format!("{prefix}{channel}"), name));
-        let loads = loads.each_ref().map(|(channel, said)| (channel.as_str(), *said));
+        let loads = loads.each_ref().map(|(channel, name)| (channel.as_str(), *name));
         let curves = over_time(table, &loads, 1.0);
         let heading = format!("{title}: {}loads", prefix.replace('_', " "));
         let file = format!("series_{prefix}loads.svg");

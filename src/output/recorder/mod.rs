@@ -1,7 +1,7 @@
 //! Time series of a run: columns of all its parts, and the rows recorded so far.
 
 mod bearing;
-mod course;
+mod quasi_static;
 mod rubber;
 pub mod seat;
 mod shaft;
@@ -50,7 +50,7 @@ impl Recorder {
             }
             Parts::QuasiStaticSequence(parts) => {
                 let with_loads = asked.contains(&ChannelGroup::Loads);
-                columns.extend(course::columns(&parts.problem, with_loads));
+                columns.extend(quasi_static::columns(&parts.problem, with_loads));
             }
             Parts::Rubber(parts) => {
                 probes.clone_from(&parts.setup.probes);

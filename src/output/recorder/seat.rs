@@ -119,7 +119,7 @@ pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     energies(&of_seats, &["work_fit"]);
     for BondedPart { name, .. } in bushings {
         columns.extend(connection_columns(name));
-        let energies = OF_BUSHING.map(|of| Column::new(format!("{name}_{of}"), "J"));
+        let energies = BUSHING_ENERGIES.map(|of| Column::new(format!("{name}_{of}"), "J"));
         columns.extend(energies);
     }
     columns.extend(solids.iter().flat_map(shaft::columns));
@@ -135,7 +135,7 @@ pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
 
 /// Energies and works of a bushing in elements. Those of the Maxwell elements follow the law of small strain;
 /// `energy_finite_strain` is the contribution of finite strain.
-const OF_BUSHING: [&str; 6] = [
+const BUSHING_ENERGIES: [&str; 6] = [
     "energy_strain",
     "energy_maxwell",
     "energy_kinetic",

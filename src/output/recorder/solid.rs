@@ -93,9 +93,9 @@ pub(super) fn check_finite(
 fn reactions(solid: &ExplicitSolid) -> Vec<Vec3> {
     let (model, forces) = (&solid.model, solid.forces());
     let mut reactions = vec![[0.0; 3]; forces.len()];
-    for held in &model.problem.prescribed {
-        let (node, axis) = (held.node as usize, held.axis);
-        let inertia = model.mass[node] * held.profile.acceleration(solid.time);
+    for prescribed in &model.problem.prescribed {
+        let (node, axis) = (prescribed.node as usize, prescribed.axis);
+        let inertia = model.mass[node] * prescribed.profile.acceleration(solid.time);
         reactions[node][axis] = inertia - forces[node][axis];
     }
     reactions

@@ -129,7 +129,7 @@ impl<'p> Session<'p> {
         let (motion, clock) = Motion::start(parts, request)?;
         let recorder = columns.with_room(clock.rows_in_all())?;
         let sound = Sound {
-            checkpoint: motion.room(),
+            checkpoint: motion.empty_checkpoint(),
             watch: LedgerWatch::default(),
             rows: 0,
             ran: StageCounts::default(),
@@ -213,7 +213,7 @@ impl<'p> Session<'p> {
         let target = self.motion.done() + steps;
         while self.status != Status::Complete && self.motion.done() < target {
             let rows = self.clock.rows;
-            let moved = self.go_to_next_stop(target - self.motion.done());
+            let moved = self.advance_to_next_event(target - self.motion.done());
             if moved.is_err() {
                 self.failed = true;
                 // Discard the invalid state that a failed step leaves in a solid.
@@ -241,7 +241,7 @@ impl<'p> Session<'p> {
     }
 
     /// Advances to the next row, the end, or by at most `most` steps.
-    fn go_to_next_stop(&mut self, most: u64) -> Result<(), SessionError> {
+    fn advance_to_next_event(&mut self, most: u64) -> Result<(), SessionError> {
         // A bearing resumes from the state before a failed step or a step shortened by the end, and a quasi-static sequence
         // from before its last equilibrium, which is then computed again; other runs resume from their rows.
         let keeps_rows =
@@ -284,7 +284,7 @@ impl<'p> Session<'p> {
                 recorder.record_solid(&mut moving.solid, watch, *energy_limit)?;
             }
             Motion::Housed(housed) => recorder.record_housed(housed, watch, *energy_limit)?,
-            Motion::QuasiStaticSequence(course) => recorder.record_equilibrium(course),
+            Motion::QuasiStaticSequence(sequence) => recorder.record_equilibrium(sequence),
             Motion::Rubber(moving) => recorder.record_rubber(&moving.solid)?,
         }
         self.clock.count_row(self.motion.time());
@@ -358,7 +358,7 @@ impl<'p> Session<'p> {
             solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect()
         };
         match &self.motion {
-            Motion::QuasiStaticSequence(course) => course.displacement(solid),
+            Motion::QuasiStaticSequence(sequence) => sequence.displacement(solid),
             Motion::Rubber(moving) if solid == 0 => moving.solid.displacement().to_vec(),
             motion => motion.solids().get(solid).map_or_else(Vec::new, of),
         }

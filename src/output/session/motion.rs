@@ -116,7 +116,7 @@ impl Motion<'_> {
                 StageCounts { solids: vec![moving.solid.ran], ..StageCounts::default() }
             }
             Motion::Housed(housed) => housed.ran(),
-            Motion::QuasiStaticSequence(course) => course.ran.clone(),
+            Motion::QuasiStaticSequence(sequence) => sequence.ran.clone(),
             Motion::Rubber(moving) => {
                 StageCounts { solids: vec![*moving.solid.ran()], ..StageCounts::default() }
             }
@@ -137,7 +137,7 @@ impl Motion<'_> {
             Motion::Bearing(simulation) => simulation.system.ran.clear(),
             Motion::Solid(moving) => moving.solid.ran = Counts::default(),
             Motion::Housed(housed) => housed.forget_ran(),
-            Motion::QuasiStaticSequence(course) => course.ran.clear(),
+            Motion::QuasiStaticSequence(sequence) => sequence.ran.clear(),
             Motion::Rubber(moving) => moving.solid.forget_ran(),
         }
     }
@@ -181,9 +181,9 @@ impl<'p> Motion<'p> {
                 (Motion::Housed(Box::new(housed)), clock)
             }
             Parts::QuasiStaticSequence(parts) => {
-                let course = QuasiStaticSequence::new(parts.problem, interval);
+                let sequence = QuasiStaticSequence::new(parts.problem, interval);
                 let clock = Clock { step: interval, steps_per_row: 1, ..Clock::default() };
-                (Motion::QuasiStaticSequence(Box::new(course)), clock)
+                (Motion::QuasiStaticSequence(Box::new(sequence)), clock)
             }
             Parts::Rubber(parts) => {
                 let moving = parts.started(interval)?;
@@ -228,9 +228,9 @@ impl<'p> Motion<'p> {
                 Motion::Housed(Box::new(housed))
             }
             (Parts::QuasiStaticSequence(parts), Checkpoint::QuasiStaticSequence(kept)) => {
-                let mut course = QuasiStaticSequence::new(parts.problem, clock.interval);
-                course.restore(kept)?;
-                Motion::QuasiStaticSequence(Box::new(course))
+                let mut sequence = QuasiStaticSequence::new(parts.problem, clock.interval);
+                sequence.restore(kept)?;
+                Motion::QuasiStaticSequence(Box::new(sequence))
             }
             (Parts::Rubber(parts), Checkpoint::Rubber(kept, rows)) => {
                 let mut moving = parts.at_rest(clock.interval)?;
@@ -258,7 +258,7 @@ impl<'p> Motion<'p> {
     /// Bodies and bearings; `None` for a single solid.
     pub fn assembly(&self) -> Option<&Assembly> {
         match self {
-            Motion::QuasiStaticSequence(course) => Some(&course.problem.assembly),
+            Motion::QuasiStaticSequence(sequence) => Some(&sequence.problem.assembly),
             motion => motion.bearing().map(|simulation| &simulation.system.assembly),
         }
     }
@@ -300,7 +300,7 @@ impl<'p> Motion<'p> {
             Motion::Bearing(simulation) => simulation.time,
             Motion::Solid(moving) => moving.solid.time,
             Motion::Housed(housed) => housed.time(),
-            Motion::QuasiStaticSequence(course) => course.time(),
+            Motion::QuasiStaticSequence(sequence) => sequence.time(),
             Motion::Rubber(moving) => moving.solid.time(),
         }
     }
@@ -311,7 +311,7 @@ impl<'p> Motion<'p> {
             Motion::Bearing(simulation) => simulation.steps,
             Motion::Solid(moving) => moving.solid.steps,
             Motion::Housed(housed) => housed.exchanges,
-            Motion::QuasiStaticSequence(course) => course.found,
+            Motion::QuasiStaticSequence(sequence) => sequence.found,
             Motion::Rubber(moving) => moving.rows,
         }
     }
@@ -340,7 +340,7 @@ impl<'p> Motion<'p> {
                     }
                 }
             }
-            Motion::QuasiStaticSequence(course) => course.find_next()?,
+            Motion::QuasiStaticSequence(sequence) => sequence.find_next()?,
             Motion::Rubber(moving) => {
                 (0..count).try_for_each(|_| moving.go_to_next_row())?;
             }
@@ -351,13 +351,13 @@ impl<'p> Motion<'p> {
 
     /// Checkpoint of the present state.
     pub(super) fn checkpoint(&mut self) -> Checkpoint {
-        let mut kept = self.room();
+        let mut kept = self.empty_checkpoint();
         self.checkpoint_into(&mut kept);
         kept
     }
 
     /// Empty checkpoint for [`Motion::checkpoint_into`].
-    pub(super) fn room(&self) -> Checkpoint {
+    pub(super) fn empty_checkpoint(&self) -> Checkpoint {
         match self {
             Motion::Bearing(_) => Checkpoint::Bearing(Box::default()),
             Motion::Solid(moving) => Checkpoint::Solid(Box::default(), moving.solid.limit),
@@ -379,14 +379,14 @@ impl<'p> Motion<'p> {
                 moving.solid.checkpoint_into(kept);
             }
             (Motion::Housed(housed), Checkpoint::Housed(kept, _)) => housed.checkpoint_into(kept),
-            (Motion::QuasiStaticSequence(course), Checkpoint::QuasiStaticSequence(kept)) => {
-                *kept = course.checkpoint()
+            (Motion::QuasiStaticSequence(sequence), Checkpoint::QuasiStaticSequence(kept)) => {
+                *kept = sequence.checkpoint()
             }
             (Motion::Rubber(moving), Checkpoint::Rubber(kept, rows)) => {
                 (**kept, *rows) = (moving.solid.checkpoint(), moving.rows);
             }
             (motion, kept) => {
-                *kept = motion.room();
+                *kept = motion.empty_checkpoint();
                 motion.checkpoint_into(kept);
             }
         }

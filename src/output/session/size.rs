@@ -43,8 +43,8 @@ pub(super) fn size_of(
     request: &RunRequest,
 ) -> Result<TableSize, SessionError> {
     let mut names = HashSet::new();
-    let twice = recorder.columns().iter().find(|column| !names.insert(&column.name));
-    if let Some(column) = twice {
+    let repeated = recorder.columns().iter().find(|column| !names.insert(&column.name));
+    if let Some(column) = repeated {
         return Err(SessionError::SharedColumn(column.name.clone()));
     }
     let columns = recorder.columns().len();

@@ -233,7 +233,7 @@ pub(super) fn place(checkpoint: &Checkpoint) -> (f64, u64) {
     }
 }
 
-const LACKS: Refused = Refused::Damaged("a part of the scene is missing");
+const MISSING_PART: Refused = Refused::Damaged("a part of the scene is missing");
 
 /// Checkpoint from a state file in `folder` for these parts.
 pub(super) fn checkpoint(
@@ -241,13 +241,13 @@ pub(super) fn checkpoint(
     file: &StateFile,
     parts: &Parts,
 ) -> Result<Checkpoint, Refused> {
-    let bearing = || file.bearing.as_deref().ok_or(LACKS);
+    let bearing = || file.bearing.as_deref().ok_or(MISSING_PART);
     Ok(match parts {
         Parts::Bearing(assembly) => {
             Checkpoint::Bearing(Box::new(bearing()?.checked(file.time, assembly)?))
         }
         Parts::Solid(parts) => {
-            let [solid] = file.solids.as_slice() else { return Err(LACKS) };
+            let [solid] = file.solids.as_slice() else { return Err(MISSING_PART) };
             let nodes = parts.setup.problem.nodes.len();
             let kept = solid.checkpoint(folder, nodes, 0..nodes)?;
             Checkpoint::Solid(Box::new(kept), solid.limit.to_limit())
@@ -258,28 +258,28 @@ pub(super) fn checkpoint(
             Checkpoint::Housed(Box::new(kept), windows)
         }
         Parts::QuasiStaticSequence(parts) => {
-            let course = file.course.as_ref().ok_or(LACKS)?;
+            let sequence = file.course.as_ref().ok_or(MISSING_PART)?;
             let problem = &parts.problem;
             let nodes: Vec<usize> = problem.seats.iter().map(|s| s.bore.nodes.len()).collect();
-            let touching = read_touching(folder, &course.arrays, &nodes)?;
-            let places = course.places.clone();
+            let touching = read_touching(folder, &sequence.arrays, &nodes)?;
+            let places = sequence.places.clone();
             if places.as_ref().is_some_and(|at| at.len() != problem.assembly.bodies.len()) {
-                return Err(LACKS);
+                return Err(MISSING_PART);
             }
             Checkpoint::QuasiStaticSequence(QuasiStaticCheckpoint {
                 time: file.time,
                 found: file.steps,
                 effort: Effort {
-                    largest_residual: course.largest_residual,
-                    iterations: course.iterations,
-                    contact_changes: course.contact_changes,
+                    largest_residual: sequence.largest_residual,
+                    iterations: sequence.iterations,
+                    contact_changes: sequence.contact_changes,
                 },
                 memory: CourseMemory { places, touching },
                 nodes,
             })
         }
         Parts::Rubber(parts) => {
-            let kept = file.rubber.as_ref().ok_or(LACKS)?;
+            let kept = file.rubber.as_ref().ok_or(MISSING_PART)?;
             Checkpoint::Rubber(Box::new(kept.checkpoint(folder, file.time, parts)?), file.steps)
         }
     })
@@ -292,11 +292,11 @@ fn exchange(
     parts: &HousedParts,
     simulation: BearingCheckpoint,
 ) -> Result<(ExchangeCheckpoint, Windows), Refused> {
-    let exchange = file.exchange.as_ref().ok_or(LACKS)?;
+    let exchange = file.exchange.as_ref().ok_or(MISSING_PART)?;
     let ExchangeEntry { steps_per_window, seats, .. } = exchange;
     let count = parts.solids.len();
     if [file.solids.len(), steps_per_window.len(), seats.len()] != [count; 3] {
-        return Err(LACKS);
+        return Err(MISSING_PART);
     }
     if steps_per_window.contains(&0) {
         return Err(Refused::Damaged("no step from one row to the next"));
@@ -305,12 +305,12 @@ fn exchange(
     let mut solids = Vec::with_capacity(count);
     for (index, (entry, seats)) in file.solids.iter().zip(seats).enumerate() {
         if seats.len() != parts.seats.iter().filter(|seat| seat.solid == index).count() {
-            return Err(LACKS);
+            return Err(MISSING_PART);
         }
         let shaft = exchange.shafts.get(index).cloned().unwrap_or_default();
         let joints = parts.solids[index].shaft.as_ref().map(|of| of.joints.len());
         if shaft.len() != joints.map_or(0, |joints| 2 * joints + 1) {
-            return Err(LACKS);
+            return Err(MISSING_PART);
         }
         let from: usize = nodes[..index].iter().sum();
         let rows = from..from + nodes[index];
@@ -341,7 +341,7 @@ fn read_bushings(
     let none = (String::new(), Vec::new());
     let (file, lengths) = exchange.bushings.as_ref().unwrap_or(&none);
     if lengths.len() != parts.bushings.len() {
-        return Err(LACKS);
+        return Err(MISSING_PART);
     }
     if lengths.is_empty() {
         return Ok(Vec::new());

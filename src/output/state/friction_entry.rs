@@ -65,16 +65,17 @@ pub(super) fn read(
     parts: &HousedParts,
     seats: &mut [&mut SeatCheckpoint],
 ) -> Result<(), Refused> {
-    const OTHERS: Refused = Refused::Damaged("the friction of its bores differs from the scene");
+    const OTHER_FRICTION: Refused =
+        Refused::Damaged("the friction of its bores differs from the scene");
     let by_solid = (0..parts.solids.len())
         .flat_map(|solid| parts.seats.iter().filter(move |seat| seat.solid == solid));
     let rough = seats.iter_mut().zip(by_solid).filter(|(_, seat)| seat.friction.is_some());
     let rough: Vec<_> = rough.collect();
     let Some(FrictionEntry { arrays, seats }) = entry else {
-        return if rough.is_empty() { Ok(()) } else { Err(OTHERS) };
+        return if rough.is_empty() { Ok(()) } else { Err(OTHER_FRICTION) };
     };
     if seats.len() != rough.len() {
-        return Err(OTHERS);
+        return Err(OTHER_FRICTION);
     }
     let rows = table(folder, arrays, (seats.iter().map(|(springs, _)| springs).sum(), WIDTH))?;
     let mut rows = rows.data().rows().into_iter();

@@ -129,8 +129,8 @@ pub fn run_summary(
         Motion::Solid(moving) => solid::work(&moving.solid),
         Motion::Rubber(moving) => rubber::work(moving),
         Motion::Housed(housed) => housing::work(housed),
-        Motion::QuasiStaticSequence(course) => {
-            let effort = &course.effort;
+        Motion::QuasiStaticSequence(sequence) => {
+            let effort = &sequence.effort;
             let residual = quantity("residual", effort.largest_residual, "1")?;
             summary.insert("largest_unbalanced_part_of_load".into(), residual);
             json!({
@@ -162,7 +162,7 @@ pub fn run_summary(
     }
     summary.insert("final".into(), final_values(table)?);
     if table.window.is_empty() {
-        let note = "the run has not come to the window yet";
+        let note = "the run has not reached the window yet";
         summary.insert("window".into(), json!({ "rows": 0, "note": note }));
     } else {
         summary.insert("window".into(), window(table)?);

@@ -20,9 +20,9 @@ use crate::solids::trust::{EnergyError, Placed, at_most, energy_error, largest_v
 /// Relative error of displacements or frequencies without a warning; compared with the upper end of the estimate ([`at_most`]).
 const TOLERATED_ERROR: f64 = 0.02;
 /// Fraction of the surface with the thinnest walls, where elements through the wall are counted.
-const THIN: f64 = 0.1;
+const THIN_SURFACE_SHARE: f64 = 0.1;
 /// Number of elements through a wall below which a mesh is too coarse.
-const FEW: f64 = 2.5;
+const FEWEST_ELEMENTS: f64 = 2.5;
 /// Poisson's ratio above which four-node elements lock with any number of elements through a wall. At 0.45 the bulk
 /// modulus is ten times the shear modulus, and a mesh has about as many volume constraints (elements) as free
 /// components.
@@ -164,9 +164,13 @@ fn upper_end(model: &SolidModel, error: &EnergyError) -> (f64, String) {
     let elements = &model.problem.elements;
     // A small error needs no search for thin walls.
     let sound = error.part() <= 0.1 * TOLERATED_ERROR;
-    let wall = if sound { None } else { thinnest_wall(&model.problem.nodes, elements, THIN) };
+    let wall = if sound {
+        None
+    } else {
+        thinnest_wall(&model.problem.nodes, elements, THIN_SURFACE_SHARE)
+    };
     let through = wall.map_or(f64::INFINITY, |wall| wall.elements);
-    let walls = wall.filter(|wall| wall.elements < FEW).map_or(String::new(), |wall| {
+    let walls = wall.filter(|wall| wall.elements < FEWEST_ELEMENTS).map_or(String::new(), |wall| {
         let count = to_digits(wall.elements, 2);
         let noun = if count == 1.0 { "element" } else { "elements" };
         let thickness = to_digits(1e3 * wall.thickness, 4);

@@ -178,7 +178,7 @@ impl Recorder {
         let [x, y, z] = now.motion.position;
         self.values.extend([x - place, y, z]);
         self.values.extend(tilts_of(axis).map(f64::to_degrees));
-        self.turned(libm::atan2(own_y.z, own_y.y), speed, before, row);
+        self.push_unwrapped(libm::atan2(own_y.z, own_y.y), speed, before, row);
         self.values.push(speed);
         if caged.contacts.guidance != Guidance::Balls {
             self.values.push(set.guides[0].normal_load + set.guides[1].normal_load);
@@ -200,7 +200,7 @@ impl Recorder {
             let [_, y, z] = sub(vector(POSITION), outer.position);
             let [_, v, w] = sub(vector(VELOCITY), outer.velocity);
             let speed = (y * w - z * v) / (y * y + z * z);
-            self.turned(libm::atan2(z, y), speed, before, row);
+            self.push_unwrapped(libm::atan2(z, y), speed, before, row);
             self.values.push(speed);
         }
         for side in 0..2 {
@@ -210,7 +210,7 @@ impl Recorder {
 
     /// Adds an unwrapped angle in degrees: of the angles that differ by whole turns, the one closest to the prediction from the
     /// row before and the mean speed (the speed is in the next column).
-    fn turned(&mut self, wrapped: f64, speed: f64, before: Option<usize>, row: usize) {
+    fn push_unwrapped(&mut self, wrapped: f64, speed: f64, before: Option<usize>, row: usize) {
         let column = self.values.len() - row;
         let angle = match before {
             None => wrapped,

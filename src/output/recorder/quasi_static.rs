@@ -56,25 +56,25 @@ fn moving_races(problem: &QuasiStaticProblem) -> Vec<(usize, usize)> {
 }
 
 /// Coordinates with tilts in degrees.
-fn place([x, y, z, tilt_y, tilt_z]: [f64; 5]) -> [f64; 5] {
+fn in_degrees([x, y, z, tilt_y, tilt_z]: [f64; 5]) -> [f64; 5] {
     [x, y, z, tilt_y.to_degrees(), tilt_z.to_degrees()]
 }
 
 impl Recorder {
     /// Adds a row of the latest equilibrium, in the order of [`columns`].
-    pub(in crate::output) fn record_equilibrium(&mut self, course: &QuasiStaticSequence) {
-        let (Some(moment), problem) = (&course.latest, &course.problem) else { return };
+    pub(in crate::output) fn record_equilibrium(&mut self, sequence: &QuasiStaticSequence) {
+        let (Some(moment), problem) = (&sequence.latest, &sequence.problem) else { return };
         let found = &moment.solution;
         let full = self.values.len() + self.columns.len();
         self.values.push(moment.time);
         for (bearing, side) in moving_races(problem) {
-            self.values.extend(place(problem.race(found, bearing, side)));
+            self.values.extend(in_degrees(problem.race(found, bearing, side)));
         }
         for (index, body) in problem.assembly.bodies.iter().enumerate() {
             if body.label.is_some() {
                 let mut at = found.place(&problem.assembly, index);
                 at[0] -= problem.assembly.origin_of(index);
-                self.values.extend(place(at));
+                self.values.extend(in_degrees(at));
             }
         }
         for (index, shaft) in problem.assembly.shafts.iter().enumerate() {
