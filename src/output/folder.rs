@@ -154,12 +154,9 @@ fn is_at(_: &File, _: &Path) -> bool {
     true
 }
 
-/// Content of a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Holds {
-    /// Nothing that a command would replace.
     Nothing,
-    /// A run, finished or not.
     Run,
     /// Other results, by the `kind` of their summary.
     Results(String),

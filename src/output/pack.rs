@@ -28,7 +28,6 @@ pub const MANIFEST: &str = "manifest.json";
 /// Only packs have this file: a folder with it and without a manifest is an incomplete pack.
 pub const RESOLVED: &str = "resolved.json";
 
-/// `manifest.json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
@@ -38,12 +37,10 @@ pub struct Manifest {
     pub sha256: BTreeMap<String, String>,
 }
 
-/// Content of a pack except the solution.
 #[derive(Clone, Debug)]
 pub struct PackInput<'a> {
     /// `scene.toml` or `scene.json`.
     pub scene_name: &'a str,
-    /// Scene file, byte for byte.
     pub scene_text: &'a str,
     /// Files that the scene refers to: paths relative to it, and contents.
     pub files: &'a [(String, Vec<u8>)],

@@ -22,14 +22,12 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Data of a run for its summary.
 #[derive(Clone, Debug, Default)]
 pub struct RunRecord {
     /// Resolved scene, copied to `scene`; `null` for an absent part.
     pub scene: Value,
     /// Plan of the run, with the omitted items and the reasons.
     pub plan: Vec<Item>,
-    /// Number of executions of each stage.
     pub ran: StageCounts,
     /// Name and text of each assumption where the source is incomplete.
     pub assumptions: Vec<(String, String)>,

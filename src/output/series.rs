@@ -46,7 +46,6 @@ impl Column {
     }
 }
 
-/// A table of shape rows × columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     columns: Vec<Column>,
@@ -114,7 +113,6 @@ impl Series {
         &self.columns
     }
 
-    /// Rows × columns.
     pub fn data(&self) -> &Array2<f64> {
         &self.data
     }

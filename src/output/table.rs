@@ -19,7 +19,6 @@ pub struct RunTable {
     pub bearings: Vec<String>,
     /// Races, cages, other bodies and watched sections that may have columns.
     pub bodies: Vec<Moving>,
-    /// Name and column of each sensor.
     pub sensors: Vec<(String, String)>,
 }
 
@@ -30,7 +29,6 @@ pub struct Moving {
     pub column: String,
     /// Title, such as "left inner race".
     pub title: String,
-    /// Column of the spin speed.
     pub speed: String,
 }
 

@@ -6,20 +6,17 @@ use crate::output::series::{Series, columns_path};
 use serde_json::Value;
 use std::path::Path;
 
-/// Content of one file.
 pub enum Content {
     Table(Series),
     Tree(Vec<Leaf>),
 }
 
-/// One value of a JSON tree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leaf {
     /// Path with indices counted from 0: `balls[2].inner.load`.
     pub path: String,
     /// Path without indices: `balls[].inner.load`.
     pub channel: String,
-    /// Empty if the value has no unit.
     pub unit: String,
     pub value: LeafValue,
 }

@@ -39,7 +39,6 @@ fn folded(difference: f64, unit: &str) -> f64 {
 pub type Order = (usize, usize);
 
 pub struct Judge<'a> {
-    /// Name of the file being compared.
     pub file: String,
     tolerances: &'a Tolerances,
     default_class: Option<ToleranceClass>,
@@ -129,7 +128,6 @@ impl<'a> Judge<'a> {
         self.ignored.push(format!("{}: {what}", self.file));
     }
 
-    /// Adds a channel; `None` if it is not compared, which is listed.
     fn open(&mut self, channel: &str, unit: &str) -> Option<Tolerance> {
         let named = self.tolerances.entry(channel);
         if let Some((used, _)) = named {

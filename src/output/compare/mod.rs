@@ -35,14 +35,11 @@ use tolerance::{GivenTolerance, ToleranceClass, ToleranceError, Tolerances};
 
 pub use report::{report, to_json};
 
-/// Parts and columns with these names are never compared.
 pub const IGNORED_NAMES: [&str; 2] = ["version", "threads"];
-/// Name of the program, which is never compared.
 pub const PROGRAM_NAME: &str = "program.name";
 /// Values whose name, or the name of a part above them, starts with this are never compared (wall time).
 pub const IGNORED_PREFIX: &str = "seconds";
 
-/// Options of a comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Class of channels that the tolerances do not name; takes precedence over the one in the file.
@@ -108,11 +105,9 @@ pub enum CompareError {
     NoValues { path: PathBuf },
 }
 
-/// Outcome of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     pub equal: bool,
-    /// Number of values compared.
     pub checked: usize,
     /// Number of differences of any kind.
     pub differing: usize,
@@ -126,7 +121,6 @@ pub struct Comparison {
     pub only_in_candidate: Vec<String>,
 }
 
-/// One channel of one file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelResult {
     pub file: String,
@@ -149,7 +143,6 @@ pub struct Worst {
     pub ratio: f64,
 }
 
-/// A difference between candidate and reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
     pub file: String,
@@ -180,7 +173,6 @@ pub enum DivergenceKind {
         reference: String,
         candidate: String,
     },
-    /// Number of rows of a table.
     Length {
         reference: usize,
         candidate: usize,

@@ -10,7 +10,6 @@ const LISTED: usize = 20;
 /// Characters of a line that lists names, unless one name is longer.
 const WIDTH: usize = 100;
 
-/// Text that `bearing compare` prints.
 pub fn report(comparison: &Comparison) -> String {
     let mut text = String::new();
     match &comparison.first_divergence {

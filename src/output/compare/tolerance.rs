@@ -14,7 +14,6 @@ use thiserror::Error;
 /// Size limit of `tolerances.json`, bytes; it has one line per channel.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// Named set of tolerances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceClass {

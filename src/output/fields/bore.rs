@@ -11,7 +11,6 @@ use crate::solids::condensation::CondensedBore;
 use crate::solids::model::SolidModel;
 use ndarray::Array2;
 
-/// Contact state of a bore node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoreNodeState {
     pub node: u32,

@@ -44,7 +44,6 @@ pub struct Stresses {
 }
 
 impl Stresses {
-    /// Stresses from those of elements and nodes.
     pub fn new(cell: Vec<Sym3>, nodal: Vec<Sym3>) -> Stresses {
         Stresses {
             cell_von_mises: cell.iter().map(von_mises).collect(),

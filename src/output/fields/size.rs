@@ -8,7 +8,6 @@ use std::fmt;
 const MANY: f64 = 1e4;
 const LARGE: f64 = 1e10;
 
-/// Number and size of the field files of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldsSize {
     /// Time between files, s, a multiple of the output interval; `None` if fields are written at the end only.

@@ -36,7 +36,6 @@ pub fn colour(index: usize) -> RGBColor {
         _ => 110 + (u32::from(part) * 120 / 255) as u8,
     };
     match (index / COLOURS.len() % 3, red) {
-        // Black has no darker variant.
         (1, 0) if green == 0 && blue == 0 => RGBColor(120, 120, 120),
         _ => RGBColor(shade(red), shade(green), shade(blue)),
     }
@@ -94,7 +93,6 @@ pub fn text(
     area.draw_text(&content, &style, at).map_err(failed)
 }
 
-/// Title above a plot; a long title is smaller.
 pub fn title(area: &Area, content: &str) -> Result<(), PlotError> {
     let fitting = (WIDTH as i32 - 40) * 19 / (10 * content.chars().count().max(1) as i32);
     let size = TITLE_SIZE.min(fitting).max(12);
@@ -175,7 +173,6 @@ pub fn markers(area: &Area, index: usize, points: &[Point]) -> Result<(), PlotEr
     points.iter().step_by(every).try_for_each(|&point| marker(area, index, point))
 }
 
-/// Legend in rows below a plot.
 pub struct Legend {
     /// Curve number, column start and row of each entry.
     entries: Vec<(usize, i32, i32)>,

@@ -190,7 +190,6 @@ fn place(azimuth: f64, radius: f64) -> Point {
     (x.round() as i32, y.round() as i32)
 }
 
-/// Value with about three digits.
 fn short(value: f64) -> String {
     match value {
         v if !(1e-3..1e6).contains(&v) => format!("{v:.2e}"),

@@ -25,10 +25,8 @@ pub use xy::{Axis, Style, XyPlot, xy};
 
 use thiserror::Error;
 
-/// A named sequence of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
     pub name: String,
     /// `[x, y]` in the units of the axes; for a polar plot azimuth in rad and value.
     pub points: Vec<[f64; 2]>,

@@ -1,6 +1,5 @@
 //! Tick marks of axes and their labels.
 
-/// Axis from `low` to `high` with tick marks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub low: f64,

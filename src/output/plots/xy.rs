@@ -32,7 +32,6 @@ pub enum Style {
 }
 
 impl Style {
-    /// Style of one curve in a plot of this style.
     fn of(self, curve: &Curve) -> Style {
         if curve.separate { Style::Markers } else { self }
     }

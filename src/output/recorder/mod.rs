@@ -79,17 +79,14 @@ impl Recorder {
         &self.columns
     }
 
-    /// Rows recorded so far.
     pub fn rows(&self) -> usize {
         self.values.len() / self.columns.len()
     }
 
-    /// Number of rows for which memory is allocated.
     pub fn capacity(&self) -> usize {
         self.values.capacity() / self.columns.len()
     }
 
-    /// A row of the table, in the order of the columns.
     pub fn row(&self, row: usize) -> &[f64] {
         let width = self.columns.len();
         &self.values[row * width..(row + 1) * width]

@@ -20,7 +20,6 @@ pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column
     columns
 }
 
-/// Columns of the probes and supports.
 pub fn probe_columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     let mut columns = Vec::new();
     for probe in probes {
@@ -101,17 +100,14 @@ fn reactions(solid: &ExplicitSolid) -> Vec<Vec3> {
     reactions
 }
 
-/// Length of a vector.
 pub fn length(v: &Vec3) -> f64 {
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
-/// Mean of vectors over nodes.
 pub fn mean(of: &[Vec3], nodes: &[u32]) -> Vec3 {
     sum(of, nodes).map(|total| total / nodes.len() as f64)
 }
 
-/// Sum of vectors over nodes.
 pub fn sum(of: &[Vec3], nodes: &[u32]) -> Vec3 {
     let mut total = [0.0; 3];
     for node in nodes {

@@ -107,7 +107,6 @@ pub struct Session<'p> {
 pub struct Sound {
     pub checkpoint: Checkpoint,
     pub watch: LedgerWatch,
-    /// Number of rows at this state.
     pub rows: usize,
     /// Number of executions of each stage up to this state.
     pub ran: StageCounts,

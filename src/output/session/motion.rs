@@ -26,7 +26,6 @@ use crate::solids::rubber::checkpoint::RubberCheckpoint;
 use crate::solids::step_limit::{SolidStepLimit, step_limit};
 use crate::solids::threads::WorkerPool;
 
-/// Parts of a run, by kind.
 pub enum Parts<'p> {
     Bearing(Box<Assembly>),
     Solid(SolidParts<'p>),
@@ -47,7 +46,6 @@ impl From<DynamicProblem> for Parts<'_> {
     }
 }
 
-/// A single solid.
 #[derive(Clone, Copy)]
 pub struct SolidParts<'p> {
     pub setup: &'p SolidSetup,
@@ -285,7 +283,6 @@ impl<'p> Motion<'p> {
         matches!(self, Motion::Solid(_) | Motion::Housed(_))
     }
 
-    /// The solids with explicit time integration.
     pub fn solids(&self) -> Vec<&ExplicitSolid> {
         match self {
             Motion::Solid(moving) => vec![&moving.solid],
@@ -349,7 +346,6 @@ impl<'p> Motion<'p> {
         Ok(Arrival { row, completes })
     }
 
-    /// Checkpoint of the present state.
     pub(super) fn checkpoint(&mut self) -> Checkpoint {
         let mut kept = self.empty_checkpoint();
         self.checkpoint_into(&mut kept);

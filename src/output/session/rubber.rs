@@ -6,14 +6,12 @@ use crate::solids::rubber::checkpoint::RubberCheckpoint;
 use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
-/// A single rubber solid.
 #[derive(Clone, Copy)]
 pub struct RubberParts<'p> {
     pub setup: &'p RubberSetup,
     pub stepping: Stepping,
 }
 
-/// A rubber solid during a run.
 pub struct MovingRubber<'p> {
     pub solid: RubberSolid<'p>,
     pub stepping: Stepping,
@@ -39,7 +37,6 @@ impl<'p> RubberParts<'p> {
 }
 
 impl MovingRubber<'_> {
-    /// Advances to the next row.
     pub(super) fn go_to_next_row(&mut self) -> Result<(), RubberError> {
         self.go_to((self.rows + 1) as f64 * self.interval)?;
         self.rows += 1;

@@ -8,7 +8,6 @@ use std::collections::HashSet;
 /// Limit on the number of values of a table: it is kept in memory, copied for the results and written twice.
 pub(super) const MOST_VALUES: f64 = 1e8;
 
-/// Size of the table of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableSize {
     pub rows: f64,

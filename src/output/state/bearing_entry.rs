@@ -14,7 +14,6 @@ use crate::motion::step_watch::{StepWatch, Stiffness};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-/// State of a multibody simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BearingEntry {
@@ -195,7 +194,6 @@ impl BearingEntry {
                     bending_strain,
                     seat,
                 },
-                // Zero at the start of a run.
                 before: 0.0,
                 largest_contact: self.largest_contact_energy,
                 turnover: ContactTurnover {

@@ -21,7 +21,6 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::Path;
 
-/// Reason for rejecting a state.
 pub(super) enum Refused {
     Damaged(&'static str),
     Series(SeriesError),
@@ -33,7 +32,6 @@ impl From<SeriesError> for Refused {
     }
 }
 
-/// A solid in explicit steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolidEntry {
@@ -92,7 +90,6 @@ impl SolidLimitEntry {
 pub struct ExchangeEntry {
     /// Number of steps of each solid in a coupling step.
     pub steps_per_window: Vec<usize>,
-    /// Fits of each solid.
     pub seats: Vec<Vec<SeatEntry>>,
     /// File with the values of all bushings in one column, and the number of values of each.
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -332,7 +329,6 @@ fn exchange(
     Ok((ExchangeCheckpoint { simulation, solids, bushings, exchanges, first }, windows))
 }
 
-/// Values of each bushing.
 fn read_bushings(
     folder: &Path,
     exchange: &ExchangeEntry,

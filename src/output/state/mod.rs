@@ -41,7 +41,6 @@ use thiserror::Error;
 /// Format version of `state.json`.
 pub const FORM: u32 = 5;
 
-/// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateFile {
@@ -52,7 +51,6 @@ pub struct StateFile {
     /// See [`fingerprint`].
     pub fingerprint: String,
     pub stopped: Stopped,
-    /// Error that ended a failed run.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error: Option<String>,
     /// s.

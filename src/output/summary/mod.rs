@@ -70,7 +70,6 @@ pub fn write_run_results(
     Ok(written)
 }
 
-/// The table with rounded times.
 fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {
     let mut data = table.series.data().clone();
     for (row, time) in data.column_mut(0).iter_mut().enumerate() {

@@ -7,7 +7,6 @@ pub mod solid;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
-/// One warning of a command.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Warning {
     pub code: WarningCode,
@@ -31,7 +30,6 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Warnings as lines of text.
 pub fn lines(warnings: &[Warning]) -> String {
     warnings.iter().map(|warning| format!("{warning}\n")).collect()
 }
@@ -59,7 +57,6 @@ pub enum WarningCode {
 }
 
 impl WarningCode {
-    /// Number in the code, from 1.
     pub fn number(self) -> usize {
         self as usize
     }
@@ -76,7 +73,6 @@ impl Serialize for WarningCode {
     }
 }
 
-/// Explanation of a code.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
     pub name: &'static str,
@@ -85,7 +81,6 @@ pub struct Entry {
     pub action: &'static str,
 }
 
-/// All codes, by number.
 pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W01-indeterminate-position",

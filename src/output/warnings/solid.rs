@@ -81,7 +81,6 @@ pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Warni
     Ok(warnings)
 }
 
-/// Warnings on an equilibrium.
 pub fn of_equilibrium(
     model: &SolidModel,
     displacement: &[Vec3],
@@ -144,7 +143,6 @@ pub fn of_modes(model: &SolidModel, found: &Modes) -> Vec<Warning> {
     (!fine).then(|| Warning::new(WarningCode::MeshTooCoarse, text())).into_iter().collect()
 }
 
-/// Warning on a mesh that underestimates displacements.
 fn of_mesh(model: &SolidModel, error: &EnergyError) -> Option<Warning> {
     let (factor, walls) = upper_end(model, error);
     let part = error.expected(factor);
@@ -179,7 +177,6 @@ fn upper_end(model: &SolidModel, error: &EnergyError) -> (f64, String) {
     (at_most(elements.order(), through), walls)
 }
 
-/// Advice for a mesh that is too coarse.
 fn refinement(model: &SolidModel) -> &'static str {
     match model.problem.elements.order() {
         Order::Linear => "write order = 2 in [solid.mesh], or give more cells through the walls",
@@ -187,7 +184,6 @@ fn refinement(model: &SolidModel) -> &'static str {
     }
 }
 
-/// Warning on four-node elements near incompressibility.
 fn of_locking(model: &SolidModel) -> Option<Warning> {
     let poisson = model.problem.material.poisson_ratio();
     let locks = model.problem.elements.order() == Order::Linear && poisson >= NEARLY_INCOMPRESSIBLE;
