@@ -1,6 +1,6 @@
-//! Memory as people write it.
+//! Memory sizes as text.
 
-/// So many bytes.
+/// Size in bytes as text, in MB or GB.
 ///
 /// ```
 /// use bearing_dynamics::output::amounts::size;

@@ -1,4 +1,4 @@
-//! The results folder of an equilibrium of several bodies: `summary.json` with a part for each body and each
+//! Results folder of the equilibrium of several bodies: `summary.json` with a section for each body and each
 //! bearing, and `series.csv` with a row for each ball of each bearing.
 
 use crate::assembly::lists::Assembly;
@@ -15,7 +15,7 @@ use serde_json::{Map, Value, json};
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// An equilibrium, [`readable`], and the names of its bearings.
+/// Equilibrium as returned by [`readable`], and the names of its bearings.
 #[derive(Clone, Copy)]
 pub struct Solved<'s> {
     pub assembly: &'s StaticAssembly<'s>,
@@ -23,12 +23,12 @@ pub struct Solved<'s> {
     pub solution: &'s AssemblySolution,
 }
 
-/// What rounding leaves of a displacement (m) or tilt (rad) that is zero: 64 ulps of a pitch radius of 30 mm.
-const NOTHING: f64 = 4e-16;
+/// Rounding error of a displacement (m) or tilt (rad) that is zero: 64 ulps of a pitch radius of 30 mm.
+const ROUNDING: f64 = 4e-16;
 
-/// A solution as people read it, in the scene's axes whichever way round a bearing is put in: azimuths from +Y
-/// towards +Z, forces of the cage towards larger azimuth. X of races, balls and centres counts from
-/// where their bearing sits, `moving` being what the equilibrium is one of.
+/// Solution in the scene's axes, also for reversed bearings: azimuth from +Y towards +Z, cage force positive towards
+/// larger azimuth. The x of races, balls and centres is measured from the position of their bearing in `moving`, the
+/// assembly that `assembly` is the static model of.
 pub fn readable(
     moving: &Assembly,
     assembly: &StaticAssembly,
@@ -43,7 +43,7 @@ pub fn readable(
             }
             _ => moving.origin_of(body),
         };
-        for coordinate in coordinates.iter_mut().filter(|q| q.abs() <= NOTHING) {
+        for coordinate in coordinates.iter_mut().filter(|q| q.abs() <= ROUNDING) {
             *coordinate = 0.0;
         }
     }
@@ -63,7 +63,7 @@ pub fn readable(
     read
 }
 
-/// Writes the results folder and returns the files in it.
+/// Writes the results folder and returns its files.
 ///
 /// # Errors
 /// A value that is not finite (nothing is written then), a name used twice, a file that cannot be written.
@@ -77,7 +77,7 @@ pub fn write(
     write_results(folder, &series, &summary)
 }
 
-/// One row a ball, bearing after bearing: number of the bearing, then what a bearing alone has.
+/// One row per ball, bearing after bearing: number of the bearing, then the columns of a single bearing.
 fn series(solved: &Solved) -> Result<Series, ResultsError> {
     let mut columns = vec![Column::new("bearing", "1")];
     columns.extend(ball_columns());
@@ -135,7 +135,7 @@ pub fn summary(solved: &Solved, record: &RunRecord) -> Result<Value, ResultsErro
     Ok(Value::Object(summary))
 }
 
-/// Sections of bodies that bend: how far each has gone from where the straight body at its given place has it.
+/// Displacements of the sections of flexible bodies relative to the undeformed body (m, rad).
 fn sections(solved: &Solved) -> Result<Vec<Value>, ResultsError> {
     let mut all = Vec::new();
     for (index, body) in solved.assembly.bodies.iter().enumerate() {
@@ -154,7 +154,7 @@ fn sections(solved: &Solved) -> Result<Vec<Value>, ResultsError> {
     Ok(all)
 }
 
-/// "the outer race of bearing left" as a key.
+/// Name of a body as a JSON key: `outer_race_of_bearing_left` for "the outer race of bearing left".
 pub fn key(name: &str) -> String {
     let name = name.strip_prefix("the ").unwrap_or(name);
     name.strip_prefix("body ").unwrap_or(name).replace(' ', "_")
@@ -177,7 +177,7 @@ fn bearing(state: &BearingState) -> Result<Value, ResultsError> {
     Ok(Value::Object(part))
 }
 
-/// Names of the coordinates of all loaded bodies, in the order of the stiffness.
+/// Names of the coordinates of all loaded bodies, in the order of the stiffness matrix.
 fn coordinate_names(assembly: &StaticAssembly) -> Vec<String> {
     let loaded = assembly.bodies.iter().filter(|body| matches!(body.place, Place::Loaded(_)));
     loaded
@@ -185,7 +185,7 @@ fn coordinate_names(assembly: &StaticAssembly) -> Vec<String> {
         .collect()
 }
 
-/// Row: the load, column: the coordinate it is differentiated by; SI units of the two, N and N m over m and rad.
+/// Stiffness matrix. Row: load; column: coordinate of differentiation. N and N m over m and rad.
 fn stiffness(solved: &Solved) -> Result<Value, ResultsError> {
     let names = coordinate_names(solved.assembly);
     let matrix = &solved.solution.stiffness;

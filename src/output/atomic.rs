@@ -1,4 +1,4 @@
-//! Files appear whole or not at all.
+//! Atomic writing of files: a file is either complete or absent.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -12,20 +12,20 @@ pub struct WriteError {
     pub source: io::Error,
 }
 
-/// What to do about a file that could not be written for want of room; empty for other reasons. What a command can go on from lies
-/// beside the file or, of fields, a folder above it.
+/// Hint for a file that could not be written because the disk is full; empty for other errors. The state to resume from is
+/// in the same folder or, for fields, in the folder above.
 pub fn room_text(path: &Path, source: &io::Error) -> &'static str {
     if !matches!(source.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) {
         return "";
     }
     let is_kept = |name: &str| path.ancestors().skip(1).take(2).any(|at| at.join(name).exists());
     if is_kept("state.json") {
-        "; what was written before is whole. Make room and go on with --resume, from the last state that could be kept \
-         (--save-every)"
+        "; files written before are complete. Free disk space and continue from the last saved state with --resume \
+         (interval: --save-every)"
     } else if is_kept("sweep.json") {
-        "; what was written before is whole. Make room and sweep again: it goes on from the points that are done"
+        "; files written before are complete. Free disk space and run the sweep again: it continues after the finished points"
     } else {
-        "; what was written before is whole, but nothing to go on from was kept. Make room and run again"
+        "; files written before are complete, but there is no state to resume from. Free disk space and run again"
     }
 }
 
@@ -38,18 +38,18 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let name = path.file_name().ok_or_else(|| failed(io::ErrorKind::InvalidFilename.into()))?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|source| failed(in_the_way(folder, source)))?;
-    // The process id keeps two runs that share a folder from writing into each other's file.
+    // The process id keeps two runs in the same folder from writing to the same temporary file.
     let temporary =
         folder.join(format!(".{}.{}.partial", name.to_string_lossy(), std::process::id()));
     let written = write_and_sync(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
     written.map_err(|source| {
-        // Nothing to do when this fails too: the first error is the one to report.
+        // A failure to remove the file is ignored: the first error is the one to report.
         let _ = fs::remove_file(&temporary);
         failed(source)
     })
 }
 
-/// Where a file stands in place of a folder, the system says "File exists" of no one knows which.
+/// Error that names the file which is in the way of a folder: the system's "File exists" does not.
 fn in_the_way(folder: &Path, source: io::Error) -> io::Error {
     let file = folder.ancestors().find(|part| part.exists() && !part.is_dir());
     let Some(file) = file else { return source };
@@ -60,29 +60,28 @@ fn in_the_way(folder: &Path, source: io::Error) -> io::Error {
     io::Error::new(source.kind(), text)
 }
 
-/// Removes what killed runs left half written in a folder: the temporary files of [`write_atomic`]
-/// whose process is gone. What cannot be removed stays: it harms nothing.
+/// Removes temporary files of [`write_atomic`] whose process has ended. Files that cannot be removed are left.
 ///
-/// Where the system does not list processes in `/proc`, only files older than an hour are removed.
+/// On systems without `/proc`, files older than an hour are removed.
 pub fn remove_partials(folder: &Path) {
     let listed = Path::new("/proc/self").exists();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let Some(process) = writer_of(&name.to_string_lossy()) else { continue };
-        let gone = if listed {
+        let has_ended = if listed {
             !Path::new(&format!("/proc/{process}")).exists()
         } else {
             let written = entry.metadata().and_then(|data| data.modified()).ok();
             let age = written.and_then(|time| time.elapsed().ok());
             process != std::process::id() && age.is_some_and(|age| age.as_secs() > 3600)
         };
-        if gone {
+        if has_ended {
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// The process that a temporary file of [`write_atomic`] is named after.
+/// Process id in the name of a temporary file of [`write_atomic`].
 fn writer_of(name: &str) -> Option<u32> {
     let (_, process) = name.strip_prefix('.')?.strip_suffix(".partial")?.rsplit_once('.')?;
     process.parse().ok()

@@ -1,9 +1,8 @@
-//! Who may write into a results folder, and over what.
+//! Exclusive access to a results folder, and checks of its content.
 //!
-//! A command claims its folder before it computes anything: the folder can be made and written to, no
-//! other process of this program writes there, and what lies in it may be replaced. The lock is the
-//! system's, on the folder itself: it leaves no file, and goes with the process that holds it, however
-//! that ends.
+//! A command claims its folder before it computes anything: the folder exists and is writable, no other process of this
+//! program writes to it, and its content may be replaced. The lock is a system lock on the folder itself: it leaves no
+//! file and ends with the process.
 
 use crate::output::atomic::remove_partials;
 use crate::output::json;
@@ -15,14 +14,14 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// A folder that this process alone writes into, until it is dropped. One that was made for it and is
-/// still empty goes again.
+/// Results folder that only this process writes to, until it is dropped. A folder that was created for it and is still
+/// empty is then removed.
 #[derive(Debug)]
 pub struct ResultsFolder {
     path: PathBuf,
-    /// Innermost first.
+    /// Created folders, innermost first.
     made: Vec<PathBuf>,
-    /// False where the file system cannot lock.
+    /// False if the file system cannot lock.
     pub locked: bool,
     _lock: File,
 }
@@ -39,18 +38,18 @@ pub enum FolderError {
     )]
     Make { folder: PathBuf, source: io::Error },
     #[error(
-        "cannot write into the results folder {}: {source}; choose another --out, or see who may write \
-         there and whether the disk is full",
+        "cannot write to the results folder {}: {source}; choose another --out, or check permissions \
+         and free disk space",
         folder.display()
     )]
     Write { folder: PathBuf, source: io::Error },
     #[error(
-        "another bearing process is writing into {}; wait until it has ended, or choose another --out",
+        "another bearing process is writing to {}; wait until it ends, or choose another --out",
         folder.display()
     )]
     Busy { folder: PathBuf },
     #[error(
-        "{} was not written by this program ({reason}), and is not replaced; move it away, or choose \
+        "{} was not written by this program ({reason}) and is not replaced; move it away, or choose \
          another --out",
         file.display()
     )]
@@ -67,7 +66,7 @@ impl Deref for ResultsFolder {
 
 impl Drop for ResultsFolder {
     fn drop(&mut self) {
-        // Only empty folders can be removed so; what cannot be removed stays: it harms nothing.
+        // Only empty folders can be removed; folders that cannot be removed are left.
         for folder in &self.made {
             if fs::remove_dir(folder).is_err() {
                 break;
@@ -76,11 +75,11 @@ impl Drop for ResultsFolder {
     }
 }
 
-/// Makes the folder where there is none, locks it, sees that it can be written to, and removes what
-/// killed processes left half written in it.
+/// Creates the folder if necessary, locks it, checks that it is writable, and removes partial files of killed
+/// processes.
 ///
 /// # Errors
-/// [`FolderError`] but for [`FolderError::Foreign`].
+/// All of [`FolderError`] except [`FolderError::Foreign`].
 pub fn claim(path: &Path) -> Result<ResultsFolder, FolderError> {
     let mut made = Vec::new();
     let (lock, locked) = loop {
@@ -97,14 +96,14 @@ pub fn claim(path: &Path) -> Result<ResultsFolder, FolderError> {
             }
             Err(TryLockError::Error(_)) => false,
         };
-        // Another process may have removed its empty folder between the opening and the locking.
+        // Another process may have removed its empty folder between opening and locking.
         if is_at(&handle, path) {
             break (handle, locked);
         }
     };
     let folder = ResultsFolder { path: path.to_path_buf(), made, locked, _lock: lock };
     let write = |source| FolderError::Write { folder: path.to_path_buf(), source };
-    // Named as a half-written file is, so that it does not stay.
+    // The name is that of a partial file, so that a leftover is removed later.
     let probe = path.join(format!(".probe.{}.partial", std::process::id()));
     File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(write)?;
     if locked {
@@ -113,7 +112,7 @@ pub fn claim(path: &Path) -> Result<ResultsFolder, FolderError> {
     Ok(folder)
 }
 
-/// Makes a folder and those above it; returns the new ones, innermost first.
+/// Creates a folder and its parents; returns the new ones, innermost first.
 fn make(path: &Path) -> Result<Vec<PathBuf>, FolderError> {
     let folder = || path.to_path_buf();
     let missing: Vec<PathBuf> = path
@@ -135,7 +134,7 @@ fn handle(folder: &Path) -> io::Result<File> {
     File::open(folder)
 }
 
-/// Whether a path still leads to an opened folder.
+/// Returns whether a path still leads to an opened folder.
 #[cfg(unix)]
 fn is_at(handle: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -144,7 +143,7 @@ fn is_at(handle: &File, path: &Path) -> bool {
     matches!((opened, fs::metadata(path).map(place)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Folders cannot be opened everywhere: there a file in it stands for the folder.
+/// Handle of a file in the folder, on systems where folders cannot be opened.
 #[cfg(not(unix))]
 fn handle(folder: &Path) -> io::Result<File> {
     File::options().create(true).truncate(false).write(true).open(folder.join(".lock"))
@@ -155,12 +154,9 @@ fn is_at(_: &File, _: &Path) -> bool {
     true
 }
 
-/// What a folder holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Holds {
-    /// Nothing that a command would replace.
     Nothing,
-    /// A run, finished or not.
     Run,
     /// Other results, by the `kind` of their summary.
     Results(String),
@@ -168,7 +164,7 @@ pub enum Holds {
     Pack,
 }
 
-/// Tables that a command replaces; they are this program's where one of its records lies beside them.
+/// Tables that a command replaces. They belong to this program if one of its records is in the same folder.
 const TABLES: [&str; 7] = [
     "series.csv",
     "series.npy",
@@ -179,10 +175,10 @@ const TABLES: [&str; 7] = [
     "sweep.npy",
 ];
 
-/// What lies in a folder, by the records that this program leaves.
+/// Kind of the results in a folder, from the records of this program.
 ///
 /// # Errors
-/// [`FolderError::Foreign`] for a file that a command would replace and that is not this program's.
+/// [`FolderError::Foreign`] for a file that a command would replace and that another program wrote.
 pub fn holds(folder: &Path) -> Result<Holds, FolderError> {
     let there = |name: &str| folder.join(name).exists();
     let foreign = |name: &str, reason: &str| FolderError::Foreign {
@@ -202,7 +198,7 @@ pub fn holds(folder: &Path) -> Result<Holds, FolderError> {
     };
     let (state, summary) = (record("state.json")?, record("summary.json")?);
     let sweep = record("sweep.json")?;
-    // A pack that was left half written has no manifest yet.
+    // A partial pack has no manifest yet.
     let manifest = json::read(&folder.join(MANIFEST)).is_ok_and(|manifest| is_own(&manifest));
     if manifest || (summary.is_some() && there(RESOLVED)) {
         return Ok(Holds::Pack);
@@ -219,19 +215,18 @@ pub fn holds(folder: &Path) -> Result<Holds, FolderError> {
             kind => Holds::Results(kind.to_string()),
         });
     }
-    // A process killed between its tables and its record leaves the names of the columns, or the list
-    // of fields.
+    // A process killed between its tables and its record leaves the column names or the list of fields.
     if there("series.columns.json") || there("fields.pvd") {
         return Ok(Holds::Nothing);
     }
     match TABLES.iter().find(|name| there(name)) {
-        Some(name) => Err(foreign(name, "no record of this program lies beside it")),
+        Some(name) => Err(foreign(name, "no record of this program is in the folder")),
         None => Ok(Holds::Nothing),
     }
 }
 
-/// Whether a record says that this program wrote it: summaries name it in a table, a run in its
-/// housing a level deeper, all others as a word.
+/// Returns whether a record names this program: in a table in summaries, one level deeper in runs with a
+/// housing, as a string in other records.
 fn is_own(record: &Value) -> bool {
     let name = env!("CARGO_PKG_NAME");
     [&record["program"], &record["program"]["name"], &record["bearing"]["program"]]

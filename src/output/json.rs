@@ -1,5 +1,5 @@
-//! JSON files of results, read within bounds: a tree takes up to a hundred times the memory of its
-//! text, so that its values are counted before it is built.
+//! Reading of JSON result files with limits. A tree takes up to a hundred times the memory of its text, so that its values
+//! are counted before it is built.
 
 use crate::scene::text::input_file;
 use crate::scene::text::input_file::{InputError, LARGEST_JSON};
@@ -7,21 +7,21 @@ use serde_json::Value;
 use std::path::Path;
 use thiserror::Error;
 
-/// Values, lists and tables in a file. The summary of a run of 200 balls that records everything has
-/// some ten thousand; a quarter of a million take about 100 MB.
+/// Limit on the values, lists and tables in a file. The summary of a run of 200 balls that records everything has about
+/// 10 000; 250 000 take about 100 MB.
 pub const MOST_VALUES: usize = 250_000;
 
 #[derive(Debug, Error)]
 pub enum JsonError {
     #[error(transparent)]
     Input(#[from] InputError),
-    #[error("it has more than {MOST_VALUES} values; tables belong into .csv or .npy files")]
+    #[error("it has more than {MOST_VALUES} values; store tables in .csv or .npy files")]
     TooMany,
     #[error(transparent)]
     Syntax(#[from] serde_json::Error),
 }
 
-/// Reads a file as a tree.
+/// Reads a JSON file.
 ///
 /// # Errors
 /// [`JsonError`].
@@ -29,7 +29,7 @@ pub fn read(path: &Path) -> Result<Value, JsonError> {
     parse(&input_file::read(path, LARGEST_JSON)?)
 }
 
-/// The same from bytes.
+/// Parses JSON text.
 ///
 /// # Errors
 /// [`JsonError`].
@@ -40,8 +40,8 @@ pub fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
     Ok(serde_json::from_slice(bytes)?)
 }
 
-/// How many values the text has at most: one, and one more for each comma and opening bracket outside
-/// of strings.
+/// Upper limit of the number of values in a JSON text: one, and one more for each comma and opening bracket outside
+/// strings.
 pub fn count_values(bytes: &[u8]) -> usize {
     let (mut count, mut in_string, mut escaped) = (1, false, false);
     for byte in bytes {

@@ -1,18 +1,18 @@
-//! What a run leaves behind: results folders, plots, case packs, and the comparison of two results.
+//! Results: folders, tables, plots, case packs, and the comparison of two results.
 //!
 //! - [`series`]: tables of numbers with named columns and units, as `.csv` and `.npy`
-//! - [`results`], [`assembly_results`]: the results folder of one static solution
-//! - [`session`]: a run of whatever moves; [`recorder`] keeps its rows, [`mod@state`] is what it resumes from,
-//!   [`table`] and [`summary`] say what came of it
-//! - [`fields`]: a solid as ParaView opens it
+//! - [`results`], [`assembly_results`]: results folder of a static solution
+//! - [`session`]: execution of a transient or quasi-static run; [`recorder`]: its time series; [`mod@state`]: its
+//!   restart files; [`table`] and [`summary`]: its evaluation
+//! - [`fields`]: fields of a solid for ParaView
 //! - [`warnings`]: codes of warnings, and the warnings on solids
 //! - [`pictures`]: plots of a run; [`plots`]: SVG pictures from plain data
-//! - [`folder`]: who may write into a results folder, and over what
-//! - [`json`], [`npy`]: readers that take what a file promises for no more than it is
-//! - [`journal`]: how the file of a state is read and written
+//! - [`folder`]: exclusive access to a results folder
+//! - [`json`], [`npy`]: file readers with limits on memory
+//! - [`journal`]: reading and writing of state files
 //! - [`mod@spectrum`]: amplitude spectra of time series
-//! - [`compare`]: where does a candidate depart from a reference, and by how much
-//! - [`visible`]: texts of files made fit for a terminal; [`amounts`]: memory as people write it
+//! - [`compare`]: comparison of a candidate with a reference
+//! - [`visible`]: escaping of text for a terminal; [`amounts`]: memory sizes as text
 //! - [`pack`]: a scene with its expected results, tolerances and hashes
 //!
 //! # The folder of a run
@@ -20,12 +20,12 @@
 //! | file | content |
 //! |---|---|
 //! | `summary.json` | every scalar as `{"value", "unit"}`; written last |
-//! | `series.csv`, `series.npy`, `series.columns.json` | one row an output interval |
-//! | `spectrum.csv` | amplitude spectra, where they were asked for |
-//! | `bore.csv` | of a housing: one row a node of the bore |
-//! | `fields.pvd`, `fields/*.vtu` | of a solid: displacement, stress, contact force over time |
-//! | `*.svg` | the plots that were asked for |
-//! | `state.json`, `state-N.npy` | what the run goes on from |
+//! | `series.csv`, `series.npy`, `series.columns.json` | one row per output interval |
+//! | `spectrum.csv` | amplitude spectra, if requested |
+//! | `bore.csv` | for a housing: one row per node of the bore |
+//! | `fields.pvd`, `fields/*.vtu` | for a solid: displacement, stress, contact force over time |
+//! | `*.svg` | the requested plots |
+//! | `state.json`, `state-N.npy` | the state to resume from |
 //!
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
 pub mod amounts;

@@ -1,4 +1,4 @@
-//! The results folder of natural motions of bodies: `summary.json`, and `series.csv` with a row for each.
+//! Results folder of the natural modes of bodies: `summary.json`, and `series.csv` with one row per mode.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::static_lists::StaticAssembly;
@@ -12,13 +12,13 @@ use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-/// Hz; 0 where nothing brings the bodies back.
+/// Natural frequency of a mode, Hz; 0 without a restoring force.
 pub fn frequency(mode: &Mode) -> f64 {
     mode.square.max(0.0).sqrt() / TAU
 }
 
-/// Names of the coordinates of what takes part: `shaft_z`; housings as they begin names of columns, and how many natural shapes each
-/// takes part with.
+/// Names of the coordinates of a mode, such as `shaft_z`. `housings` holds the column prefix and the number of modes of each
+/// housing.
 pub fn names(
     still: &StaticAssembly,
     bodies: &[MovingBody],
@@ -44,7 +44,7 @@ pub fn names(
     names
 }
 
-/// Writes summary and table and returns the files. Shapes are of unit modal mass: m and rad over √kg.
+/// Writes summary and table and returns the files. Modes have unit modal mass: m and rad over √kg.
 ///
 /// # Errors
 /// A value that is not finite, a file that cannot be written.
@@ -79,7 +79,7 @@ pub fn write(
     write_results(folder, &series, &Value::Object(summary))
 }
 
-/// The coordinate that has most of the kinetic energy.
+/// Index of the coordinate with the largest share of the kinetic energy.
 pub fn moves_most(mode: &Mode) -> usize {
     let energy = |i: &usize| mode.shape[*i] * mode.momentum[*i];
     let all = 0..mode.shape.len();

@@ -1,46 +1,44 @@
-//! NumPy's `.npy` files of real numbers, read with nothing believed: no memory is taken for what a
-//! header promises and the file does not hold.
+//! Reading and writing of NumPy `.npy` files of real numbers. The reader allocates no more memory than the file holds,
+//! whatever its header claims.
 //!
-//! Own code: the crate for them allocates the length of a header before it reads it, and descends into its brackets as deep as
-//! they go; what it would write are thirty bytes of text before the numbers, for a dozen crates to compile.
+//! Not a crate: the available one allocates the claimed header length before reading it and recurses without limit into its
+//! brackets.
 
 use ndarray::{Array2, ShapeBuilder};
 use thiserror::Error;
 
-/// Bytes of the longest header; NumPy's own limit.
+/// Length limit of a header, bytes; the same as in NumPy.
 const LONGEST_HEADER: usize = 10_000;
 
-/// Columns of the widest table: a run of 200 balls that records everything has some three thousand.
+/// Largest number of columns. A run of 200 balls that records everything has about 3000.
 pub const MOST_COLUMNS: usize = 20_000;
 
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NpyError {
-    #[error("it does not start as one")]
+    #[error("it is not a .npy file")]
     Magic,
-    #[error("version {major}.{minor} is not read; known are 1.0, 2.0 and 3.0")]
+    #[error("format version {major}.{minor} is not supported; use 1.0, 2.0 or 3.0")]
     Version { major: u8, minor: u8 },
     #[error(
-        "its header claims {claimed} bytes; there are {left}, and up to {LONGEST_HEADER} are read"
+        "its header claims {claimed} bytes; {left} follow, and at most {LONGEST_HEADER} are supported"
     )]
     HeaderLength { claimed: usize, left: usize },
-    #[error("its header is damaged at byte {at}: {expected} was expected")]
+    #[error("its header is damaged at byte {at}: expected {expected}")]
     Header { at: usize, expected: &'static str },
-    #[error("its numbers are of type {descr:?}; read are <f8, <f4, >f8 and >f4")]
+    #[error("its numbers have type {descr:?}; supported are <f8, <f4, >f8 and >f4")]
     Type { descr: String },
     #[error("it has {dimensions} dimensions; a table has one or two")]
     Dimensions { dimensions: usize },
-    #[error("it has {columns} columns; up to {MOST_COLUMNS} are read")]
+    #[error("it has {columns} columns; at most {MOST_COLUMNS} are supported")]
     Columns { columns: usize },
-    #[error(
-        "a table of {rows} rows and {columns} columns does not take the {bytes} bytes that follow"
-    )]
+    #[error("{rows} rows and {columns} columns do not match the {bytes} bytes of data")]
     Length { rows: usize, columns: usize, bytes: usize },
 }
 
-/// Numbers begin at multiples of this, bytes, so that they may be mapped into memory.
+/// Alignment of the data, bytes, for memory mapping.
 const ALIGNED: usize = 64;
 
-/// A file of a table: version 1.0, little-endian f64, row by row.
+/// Content of a `.npy` file: version 1.0, little-endian f64, row by row.
 ///
 /// ```
 /// use bearing_dynamics::output::npy;
@@ -51,24 +49,24 @@ const ALIGNED: usize = 64;
 /// ```
 pub fn file(table: &Array2<f64>) -> Vec<u8> {
     let (rows, columns) = table.dim();
-    let says =
+    let header =
         format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
     let start = b"\x93NUMPY\x01\x00";
     let before = start.len() + size_of::<u16>();
-    // Blanks up to a line break, which is part of the header.
-    let length = (before + says.len() + 1).next_multiple_of(ALIGNED) - before;
+    // The header is padded with blanks and ends with a line break.
+    let length = (before + header.len() + 1).next_multiple_of(ALIGNED) - before;
     let mut bytes = Vec::with_capacity(before + length + 8 * table.len());
     bytes.extend_from_slice(start);
-    // Two numbers of twenty digits at most: it fits.
+    // The shape has two numbers of at most twenty digits, so the length fits into u16.
     bytes.extend((length as u16).to_le_bytes());
-    bytes.extend(format!("{says:<0$}\n", length - 1).bytes());
+    bytes.extend(format!("{header:<0$}\n", length - 1).bytes());
     for value in table {
         bytes.extend_from_slice(&value.to_le_bytes());
     }
     bytes
 }
 
-/// A table of one (then a column) or two dimensions, f64 or f32, in either memory order.
+/// Parses a table of one (then a column) or two dimensions, f64 or f32, in either memory order.
 ///
 /// # Errors
 /// [`NpyError`].
@@ -110,7 +108,7 @@ pub fn parse(bytes: &[u8]) -> Result<Array2<f64>, NpyError> {
     Array2::from_shape_vec((rows, columns).set_f(fortran_order), values).map_err(|_| wrong)
 }
 
-/// `bytes` come from chunks of N.
+/// Chunk of N bytes as an array.
 fn fixed<const N: usize>(bytes: &[u8]) -> [u8; N] {
     std::array::from_fn(|i| bytes[i])
 }
@@ -121,7 +119,7 @@ struct Header {
     shape: Vec<usize>,
 }
 
-/// Reads a header: a Python dictionary of three entries in any order.
+/// Parser of a header: a Python dictionary of three entries in any order.
 struct Reader<'t> {
     text: &'t [u8],
     at: usize,
@@ -162,7 +160,7 @@ impl Reader<'_> {
         self.at += self.text[self.at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
     }
 
-    /// Goes behind this byte, if it comes next.
+    /// Skips this byte if it comes next.
     fn take(&mut self, byte: u8) -> bool {
         self.blanks();
         let found = self.text.get(self.at) == Some(&byte);
@@ -174,12 +172,12 @@ impl Reader<'_> {
         if self.take(byte) { Ok(()) } else { Err(self.wrong(name)) }
     }
 
-    /// A string without escapes: no name or type has any.
+    /// Parses a string without escapes: neither names nor types have any.
     fn string(&mut self) -> Result<String, NpyError> {
         self.blanks();
         let quote = match self.text.get(self.at) {
             Some(quote @ (b'\'' | b'"')) => *quote,
-            // A list of them: a table of named fields.
+            // A list of types: a table of named fields.
             Some(b'[') => return Err(self.wrong("one type for all numbers")),
             _ => return Err(self.wrong("a string")),
         };

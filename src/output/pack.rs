@@ -1,14 +1,14 @@
-//! `bearing pack`: what a developer of another implementation needs to check it against this one.
+//! `bearing pack`: a case for checking another implementation against this one.
 //!
 //! | file | content |
 //! |---|---|
-//! | `scene.toml` or `scene.json` | the scene as it was given |
-//! | meshes and bases | where the scene has them, in folders of the same names |
-//! | `resolved.json` | the same with every value and its unit, every default filled in |
+//! | `scene.toml` or `scene.json` | the scene as written by the user |
+//! | meshes and bases | files that the scene refers to, in folders of the same names |
+//! | `resolved.json` | the scene with every value and its unit, every default filled in |
 //! | `summary.json`, `series.csv`, `series.npy`, `series.columns.json` | the expected results |
-//! | `tolerances.json` | how far a candidate may be from them |
+//! | `tolerances.json` | tolerances of the comparison |
 //! | `README.txt` | how to use the pack |
-//! | `manifest.json` | sha256 of all of them, and the version that wrote them |
+//! | `manifest.json` | sha256 of all files, and the program version |
 
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::compare::tolerance::{
@@ -25,10 +25,9 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 pub const MANIFEST: &str = "manifest.json";
-/// Only packs have it: a folder with it and without a manifest is half a pack.
+/// Only packs have this file: a folder with it and without a manifest is an incomplete pack.
 pub const RESOLVED: &str = "resolved.json";
 
-/// `manifest.json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
@@ -38,27 +37,25 @@ pub struct Manifest {
     pub sha256: BTreeMap<String, String>,
 }
 
-/// What goes into a pack besides the solution.
 #[derive(Clone, Debug)]
 pub struct PackInput<'a> {
     /// `scene.toml` or `scene.json`.
     pub scene_name: &'a str,
-    /// As the user wrote it, to the byte.
     pub scene_text: &'a str,
-    /// Files that it is read with, by their paths from it, and their bytes.
+    /// Files that the scene refers to: paths relative to it, and contents.
     pub files: &'a [(String, Vec<u8>)],
-    /// The scene with units and defaults; `null` stands for a part left out.
+    /// The scene with units and defaults; `null` for an absent part.
     pub resolved: &'a Value,
     pub class: ToleranceClass,
 }
 
 #[derive(Debug, Error)]
 pub enum PackError {
-    #[error("{name:?} is no plain file name")]
+    #[error("{name:?} is not a plain file name")]
     SceneName { name: String },
     #[error(
-        "{name:?} is not in the scene's folder or below it, where it could be packed with the scene, or has the name of another file of a pack. Hint: put meshes \
-         and bases beside the scene and write their names alone"
+        "{name:?} is outside the scene's folder or has the name of another file of the pack. Hint: put meshes \
+         and bases next to the scene and write their names without a path"
     )]
     Elsewhere { name: String },
     #[error(
@@ -103,15 +100,15 @@ pub fn write_pack(
     let own: Vec<&str> = input.files.iter().map(|(name, _)| name.as_str()).collect();
     refuse_foreign_files(folder, input.scene_name, &own)?;
     let mut tolerances = default_tolerances(input.class);
-    // A tolerance may only name what the summary has.
+    // A tolerance may only name channels of the summary.
     if input.class != ToleranceClass::F64Exact
         && run.sections.iter().any(|(name, _)| name == "warnings")
     {
-        let ignored = ignored("every program words its own warnings");
+        let ignored = ignored("warning texts differ between programs");
         tolerances.channels.insert("warnings".into(), ignored);
     }
     tolerances.check()?;
-    // The manifest goes last: a pack without one is incomplete.
+    // The manifest is written last: a pack without one is incomplete.
     results(folder)?;
     let tolerances = serde_json::to_value(&tolerances).expect("tolerances are plain JSON");
     let texts = [
@@ -144,7 +141,7 @@ pub fn write_pack(
     Ok(manifest)
 }
 
-/// Every file of a pack but the scene and the manifest.
+/// Every file of a pack except the scene and the manifest.
 const EXPECTED: [&str; 7] = [
     "README.txt",
     RESOLVED,
@@ -158,7 +155,7 @@ const EXPECTED: [&str; 7] = [
 /// Checks every file of a pack against its manifest.
 ///
 /// # Errors
-/// The first file that is missing, altered, or not listed; a manifest that lacks a part of a pack.
+/// The first file that is missing, altered, or not listed; a manifest without a required file.
 pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
     let path = folder.join(MANIFEST);
     let bytes = input_file::read(&path, LARGEST_JSON)
@@ -187,13 +184,13 @@ pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
     Ok(manifest)
 }
 
-/// The class for everything, except what belongs to the solver's way and not to the result.
+/// The class for all channels except those on the solution process.
 pub fn default_tolerances(class: ToleranceClass) -> Tolerances {
     let mut tolerances = Tolerances { class: Some(class), channels: BTreeMap::new() };
     if class != ToleranceClass::F64Exact {
         let reasons = [
-            ("plan", "every program words its own plan"),
-            ("stages", "every program counts its own stages"),
+            ("plan", "plan texts differ between programs"),
+            ("stages", "stage counts differ between programs"),
             ("solver", "another solver takes other steps and stops at another residual"),
         ];
         for (name, reason) in reasons {
@@ -213,24 +210,25 @@ fn ignored(reason: &str) -> ChannelTolerance {
 
 fn readme(input: &PackInput) -> String {
     format!(
-        "Case pack: a bearing, and the results to hold another implementation against.
+        "Case pack: a bearing, and the expected results for checking another implementation.
 
-1. Solve {scene} with your program (resolved.json has the same with every value and its unit, defaults filled in).
-2. Write summary.json and series.csv of the same form into a folder, say candidate (series.npy
-   with series.columns.json holds the same table once more and may be left out).
+1. Solve {scene} with your program (resolved.json has the same scene with all units and defaults).
+2. Write summary.json and series.csv in the same format into a folder, say candidate (series.npy
+   and series.columns.json hold the same table and are optional).
    Copy the parts of summary.json that only repeat the input (scene, assumptions).
 3. Run, from the folder that holds this one:
 
        bearing compare pack/ candidate/
 
    (with the name of this folder for pack/). Exit code 0: equal within tolerance; 1: different,
-   with the first place where it departs; 2: a file could not be read.
+   with the first difference; 2: a file could not be read.
 
-The tolerance class is {class}; tolerances.json says where another one holds, and may be edited
-per channel. manifest.json has the sha256 of every file as it was written. Wall time, number of
-threads, versions and the program's name are not compared. Where a ball carries nothing in both
+The tolerance class is {class}; tolerances.json lists the exceptions and may be edited
+per channel. manifest.json has the sha256 of every file. Wall time, number of
+threads, versions and the program's name are not compared. If a ball has no load in both
 contacts of the reference, its position, approaches (gaps) and contact angles are not compared
-either (class f64-exact excepted): no law says where in its room such a ball is. Angles are in degrees, all else in SI units, as the headers say.
+either (except in class f64-exact), because they are not determined. Angles are in degrees, all other
+quantities in SI units, as in the headers.
 ",
         scene = input.scene_name,
         class = input.class.name(),
@@ -241,7 +239,7 @@ fn is_plain_name(name: &str) -> bool {
     is_below(name) && Path::new(name).components().count() == 1
 }
 
-/// Whether a path leads to a file in the folder that it counts from or below it, which is not the manifest.
+/// Returns whether a relative path leads to a file in the same folder or below, other than the manifest.
 fn is_below(name: &str) -> bool {
     let mut parts = Path::new(name).components();
     let written: Vec<&str> = name.split('/').collect();
@@ -250,12 +248,12 @@ fn is_below(name: &str) -> bool {
         && name != MANIFEST
 }
 
-/// Whether a pack can have a file that its scene is read with.
+/// Returns whether a file that the scene refers to can be in a pack.
 fn is_packed(name: &str, input: &PackInput) -> bool {
     is_below(name) && name != input.scene_name && !EXPECTED.contains(&name)
 }
 
-/// A pack may be written over an older pack, not into a folder with something else in it.
+/// Rejects a folder with files that are not part of a pack; an older pack may be replaced.
 ///
 /// # Errors
 /// [`PackError::Foreign`] with the first such file; a folder that cannot be read.
@@ -276,7 +274,7 @@ pub fn refuse_foreign_files(
     Ok(())
 }
 
-/// Of all files in a folder and below it, by their paths from it.
+/// Relative paths of all files in a folder and below.
 fn file_names(folder: &Path) -> Result<Vec<String>, PackError> {
     let failed = |source: std::io::Error| PackError::Read {
         path: folder.to_path_buf(),

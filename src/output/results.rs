@@ -1,4 +1,4 @@
-//! The results folder of one static solution.
+//! Results folder of a static solution.
 //!
 //! | file | content |
 //! |---|---|
@@ -7,7 +7,7 @@
 //! | `series.npy`, `series.columns.json` | the same numbers for NumPy, and their columns |
 //!
 //! Lengths in m, loads in N and N m, angles in degrees. `summary.json` is written last: a folder
-//! that has it is complete.
+//! with it is complete.
 
 use crate::assembly::plan::counts::StageCounts;
 use crate::assembly::plan::{Item, counted};
@@ -22,21 +22,19 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// What the caller knows about the run.
 #[derive(Clone, Debug, Default)]
 pub struct RunRecord {
-    /// The scene as resolved, echoed under `scene`; `null` stands for a part left out.
+    /// Resolved scene, copied to `scene`; `null` for an absent part.
     pub scene: Value,
-    /// What the run consisted of, and what was left out and why.
+    /// Plan of the run, with the omitted items and the reasons.
     pub plan: Vec<Item>,
-    /// How often each stage ran.
     pub ran: StageCounts,
-    /// Name and text of each assumption that fills a hole in the source.
+    /// Name and text of each assumption where the source is incomplete.
     pub assumptions: Vec<(String, String)>,
     pub threads: usize,
-    /// Stage and the wall time it took, s.
+    /// Name of each stage and its wall time, s.
     pub seconds: Vec<(String, f64)>,
-    /// Further named parts of the summary (frequencies, contact stiffness, …); build their
+    /// Additional named parts of the summary (frequencies, contact stiffness, …); build their
     /// numbers with [`quantity`].
     pub sections: Vec<(String, Value)>,
 }
@@ -45,7 +43,7 @@ pub struct RunRecord {
 pub enum ResultsError {
     #[error("{name} is {value}; only finite numbers are written")]
     NotFinite { name: String, value: f64 },
-    #[error("{path} is null: a number that is not finite, or a part that should be left out")]
+    #[error("{path} is null: a number is not finite, or the part should be omitted")]
     Null { path: String },
     #[error("the summary already has a part called {name:?}")]
     SectionName { name: String },
@@ -72,7 +70,7 @@ pub fn quantity(name: &str, value: f64, unit: &str) -> Result<Value, ResultsErro
     Ok(json!({ "value": value, "unit": unit }))
 }
 
-/// Writes the results folder and returns the files in it.
+/// Writes the results folder and returns its files.
 ///
 /// # Errors
 /// A value that is not finite (nothing is written then), a name used twice, a file that cannot
@@ -128,7 +126,7 @@ const CONTACT_COLUMNS: [(&str, &str); 9] = [
     ("force_on_race_z", "N"),
 ];
 
-/// One row per ball: number, azimuth, position, force of the cage, then load, approach, contact angle, ellipse,
+/// Table with one row per ball: number, azimuth, position, cage force, then load, approach, contact angle, ellipse,
 /// pressure and force of the inner and of the outer contact (columns `inner_load`, …,
 /// `outer_force_on_race_z`).
 pub fn ball_series(solution: &StaticSolution) -> Result<Series, SeriesError> {
@@ -150,7 +148,7 @@ pub(super) fn ball_columns() -> Vec<Column> {
     columns
 }
 
-/// A row for each ball, one value a column.
+/// One row per ball, in the order of [`ball_columns`].
 pub(super) fn ball_rows(balls: &[BallState]) -> impl Iterator<Item = Vec<f64>> {
     balls.iter().enumerate().map(|(index, ball)| {
         let mut values = vec![(index + 1) as f64, ball.azimuth.to_degrees()];
@@ -163,7 +161,7 @@ pub(super) fn ball_rows(balls: &[BallState]) -> impl Iterator<Item = Vec<f64>> {
     })
 }
 
-/// In the order of `CONTACT_COLUMNS`.
+/// Values in the order of `CONTACT_COLUMNS`.
 pub(super) fn contact_values(contact: &ContactState) -> [f64; 9] {
     [
         contact.normal_load,
@@ -178,7 +176,7 @@ pub(super) fn contact_values(contact: &ContactState) -> [f64; 9] {
     ]
 }
 
-/// The content of `summary.json`.
+/// Content of `summary.json`.
 ///
 /// # Errors
 /// A value that is not finite, a `null` in a further section, a section name used twice.
@@ -231,7 +229,7 @@ fn strings(pairs: &[(String, String)]) -> Value {
     Value::Object(pairs.iter().map(|(name, text)| (name.clone(), json!(text))).collect())
 }
 
-/// What the search took; the residual in N.
+/// Effort of the solver, and its residual in N.
 pub(super) fn solver(
     [iterations, contact_evaluations, saddles_left]: [usize; 3],
     residual: f64,
@@ -244,7 +242,7 @@ pub(super) fn solver(
     }))
 }
 
-/// `names` are those of the coordinates, `length` is what tilts are multiplied by.
+/// Determinacy of an equilibrium; `names` are the coordinate names, `length` is the factor of tilts.
 pub(super) fn determinacy(
     determinacy: &Determinacy,
     names: &[String],
@@ -268,13 +266,13 @@ pub(super) fn determinacy(
     }))
 }
 
-/// Where a body is (m, rad) and what holds it there (N, N m).
+/// Position of a body (m, deg) and the external loads on it in equilibrium (N, N m).
 pub(super) fn place_and_loads(
     coordinates: &SVector<f64, 5>,
     loads: &SVector<f64, 5>,
 ) -> Result<Value, ResultsError> {
     let mut position = Map::new();
-    let mut held = Map::new();
+    let mut load_entries = Map::new();
     for (index, name) in COORDINATE_NAMES.iter().enumerate() {
         let coordinate = coordinates[index];
         let (given, unit, load_unit) = match index < 3 {
@@ -282,12 +280,12 @@ pub(super) fn place_and_loads(
             false => (coordinate.to_degrees(), "deg", "N m"),
         };
         position.insert(name.to_string(), quantity(name, given, unit)?);
-        held.insert(name.to_string(), quantity(name, loads[index], load_unit)?);
+        load_entries.insert(name.to_string(), quantity(name, loads[index], load_unit)?);
     }
-    Ok(json!({ "position": position, "loads": held }))
+    Ok(json!({ "position": position, "loads": load_entries }))
 }
 
-/// Row: the load, column: the coordinate it is differentiated by.
+/// Stiffness matrix. Row: load; column: coordinate of differentiation.
 fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
     let mut rows = Map::new();
     for (i, row_name) in COORDINATE_NAMES.iter().enumerate() {
@@ -307,8 +305,8 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
     Ok(Value::Object(rows))
 }
 
-/// Number of balls that carry the inner race, and the arc from the first to the last of them in
-/// rad: the full circle less the widest gap between neighbouring loaded balls.
+/// Number of balls loaded by the inner race, and the arc from the first to the last of them in
+/// rad: the full circle minus the widest gap between neighbouring loaded balls.
 pub fn load_zone_of(balls: &[BallState]) -> (usize, f64) {
     let tau = std::f64::consts::TAU;
     let mut azimuths: Vec<f64> = balls
@@ -381,7 +379,7 @@ fn program() -> Value {
     json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") })
 }
 
-/// Program, threads, seconds, and all that a record echoes: what every kind of summary has.
+/// Inserts the parts common to all summaries: program, threads, seconds, and the content of the record.
 ///
 /// # Errors
 /// A time that is not finite, a `null` in a further section, a section name used twice.
@@ -395,7 +393,7 @@ pub fn insert_record(
     insert_echo(summary, run)
 }
 
-/// Assumptions, plan, scene and further sections of a record.
+/// Inserts assumptions, plan, scene and additional sections of a record.
 fn insert_echo(summary: &mut Map<String, Value>, run: &RunRecord) -> Result<(), ResultsError> {
     summary.insert("assumptions".into(), strings(&run.assumptions));
     let plan: Vec<String> = run.plan.iter().map(Item::to_string).collect();

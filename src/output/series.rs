@@ -1,8 +1,8 @@
-//! Tables of numbers with named columns and units: time series, one row a ball, one row a sweep point.
+//! Tables of numbers with named columns and units: time series, one row per ball, one row per sweep point.
 //!
 //! Two files hold the same numbers bit for bit: `NAME.csv` (header `azimuth [deg]`, shortest
 //! decimal that reads back to the same bits) and `NAME.npy` (rows × columns, little-endian f64)
-//! with its column names beside it in `NAME.columns.json`, a list of `{"name", "unit"}`.
+//! with its column names in `NAME.columns.json`, a list of `{"name", "unit"}`.
 
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::npy::{self, MOST_COLUMNS, NpyError};
@@ -46,7 +46,6 @@ impl Column {
     }
 }
 
-/// A table of shape rows × columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     columns: Vec<Column>,
@@ -57,7 +56,7 @@ pub struct Series {
 pub enum SeriesError {
     #[error("{columns} column names for a table of {width} columns")]
     ColumnCount { columns: usize, width: usize },
-    #[error("{columns} columns; a table has up to {MOST_COLUMNS}")]
+    #[error("{columns} columns; at most {MOST_COLUMNS} are supported")]
     Columns { columns: usize },
     #[error("column name {name:?}: {reason}")]
     ColumnName { name: String, reason: &'static str },
@@ -81,7 +80,7 @@ pub enum SeriesError {
 
 impl Series {
     /// # Errors
-    /// When the names do not fit the data: their number, an empty or repeated name, a name or
+    /// Names that do not match the data: their number, an empty or repeated name, a name or
     /// unit with brackets, a line break or outer spaces (the CSV header could not be read back).
     pub fn new(columns: Vec<Column>, data: Array2<f64>) -> Result<Self, SeriesError> {
         if columns.len() != data.ncols() {
@@ -114,12 +113,11 @@ impl Series {
         &self.columns
     }
 
-    /// Rows × columns.
     pub fn data(&self) -> &Array2<f64> {
         &self.data
     }
 
-    /// The values of a column, or `None` if there is no column of that name.
+    /// Values of a column, or `None` if there is no column with this name.
     pub fn column(&self, name: &str) -> Option<ndarray::ArrayView1<'_, f64>> {
         let index = self.columns.iter().position(|column| column.name == name)?;
         Some(self.data.column(index))
@@ -137,7 +135,7 @@ impl Series {
         Ok(())
     }
 
-    /// The table as CSV text; every number reads back to the same bits.
+    /// CSV text; every number reads back to the same bits.
     ///
     /// # Errors
     /// A value that is not finite.
@@ -146,7 +144,7 @@ impl Series {
         let mut text = csv_line(self.columns.iter().map(|column| csv_field(&column.header())));
         for row in self.data.rows() {
             // {:?} is the shortest decimal that reads back to the same bits, with an exponent
-            // where the plain form would be long.
+            // if the plain form would be long.
             text += &csv_line(row.iter().map(|value| format!("{value:?}")));
         }
         Ok(text)
@@ -158,7 +156,7 @@ impl Series {
         Ok(write_atomic(path, self.to_csv()?.as_bytes())?)
     }
 
-    /// Reads a table. Values that are not finite are read as they are (`NaN`, `inf`), so that a
+    /// Reads a CSV table. Values that are not finite (`NaN`, `inf`) are kept, so that a
     /// comparison can point at them.
     pub fn read_csv(path: &Path) -> Result<Self, SeriesError> {
         let bytes = read(path)?;
@@ -185,7 +183,7 @@ impl Series {
         Series::new(columns, data).map_err(|reason| in_file(path, reason))
     }
 
-    /// Writes `path` (`.npy`) and its column names beside it ([`columns_path`]).
+    /// Writes `path` (`.npy`) and its column names ([`columns_path`]).
     ///
     /// # Errors
     /// As [`Series::write_csv`].
@@ -200,7 +198,7 @@ impl Series {
 
     /// Reads a NumPy file of one or two dimensions, f64 or f32, in either memory order. Without
     /// a columns file the columns are called `column 0`, `column 1`, … with unknown units.
-    /// Values that are not finite are read as they are.
+    /// Values that are not finite are kept.
     pub fn read_npy(path: &Path) -> Result<Self, SeriesError> {
         let bytes = read(path)?;
         let data = npy::parse(&bytes)
@@ -218,7 +216,7 @@ impl Series {
     }
 }
 
-/// Where the column names of a `.npy` file are kept: `series.npy` → `series.columns.json`.
+/// Path of the column names of a `.npy` file: `series.npy` → `series.columns.json`.
 pub fn columns_path(npy: &Path) -> PathBuf {
     npy.with_extension("columns.json")
 }

@@ -1,42 +1,42 @@
 //! Amplitude spectra of channels.
 //!
-//! The mean under a Hann window is taken out, the window laid over the rows, and amplitudes are scaled so that a
-//! sine of amplitude 1 in the middle of a bin shows as 1. The window's main lobe is four bins wide
-//! and its side lobes start at −31 dB; a sine between two bins shows up to 15 % (1.42 dB) low,
+//! The mean weighted by a Hann window is removed, the window is applied, and amplitudes are scaled so that a
+//! sine of amplitude 1 in the middle of a bin appears as 1. The window's main lobe is four bins wide
+//! and its side lobes start at −31 dB. A sine between two bins appears up to 15 % (1.42 dB) low,
 //! which the interpolated [peaks] correct.
 //!
-//! The transform has one code for all processors; its sines are the system's, so that spectra agree between
+//! The transform uses the same code on all processors, but the sines of the system, so that spectra agree between
 //! systems to rounding only.
 
 use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 
-/// What every axis and summary says about the window.
+/// Name of the window, for axes and summaries.
 pub const WINDOW: &str = "Hann";
 pub const LEAKAGE: &str = "mean removed, Hann window: main lobe 4 bins wide, side lobes from -31 dB \
                            falling 18 dB an octave, a sine between two bins up to 15 % low in its \
                            bin and up to 4 % high as an interpolated peak";
 
-/// Amplitude of the bins from 0 to half the sampling rate.
+/// Amplitudes of the bins from 0 to half the sampling rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Hz.
+    /// Bin width, Hz.
     pub bin_width: f64,
-    /// In the unit of the channel.
+    /// Amplitudes in the unit of the channel.
     pub amplitude: Vec<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
-    /// Of the parabola through the logarithms of three bins, Hz.
+    /// Frequency at the maximum of a parabola through the logarithms of three bins, Hz.
     pub frequency: f64,
     pub amplitude: f64,
-    /// Of the highest bin itself, Hz.
+    /// Frequency of the highest bin, Hz.
     pub bin_frequency: f64,
     pub bin_amplitude: f64,
 }
 
-/// Fewest rows that give a spectrum with a bin beside the main lobe of the mean.
+/// Smallest number of rows of a spectrum: it has a bin outside the main lobe of the mean.
 pub const FEWEST_ROWS: usize = 8;
 
 /// Spectrum of values `interval` seconds apart; `None` for fewer than [`FEWEST_ROWS`].
@@ -54,11 +54,11 @@ pub fn spectrum(values: &[f64], interval: f64) -> Option<Spectrum> {
     if count < FEWEST_ROWS {
         return None;
     }
-    // Periodic form: its transform has three lines and nothing else.
+    // In its periodic form the window's transform has three lines only.
     let weight = |i: usize| 0.5 - 0.5 * libm::cos(TAU * i as f64 / count as f64);
     let weighed: f64 = values.iter().enumerate().map(|(i, value)| weight(i) * value).sum();
     let weights: f64 = (0..count).map(weight).sum();
-    // Under the window: the plain mean of a broken number of periods leaves a constant, which would stand in bin 1.
+    // The plain mean over a fractional number of periods would leave a constant, which appears in bin 1.
     let mean = weighed / weights;
     let mut windowed: Vec<f64> =
         values.iter().enumerate().map(|(i, value)| weight(i) * (value - mean)).collect();
@@ -75,15 +75,14 @@ pub fn spectrum(values: &[f64], interval: f64) -> Option<Spectrum> {
     })
 }
 
-/// Peaks lower than this part of the highest beyond the first bin are not listed: so far down a window's
-/// side lobes reach.
+/// Peaks below this fraction of the highest peak beyond the first bin are not listed: side lobes of the window reach
+/// this level.
 pub const LOWEST: f64 = 1e-3;
 
 /// The `count` highest peaks, highest first: bins higher than both neighbours, not below `floor` (in the
 /// unit of the channel) nor below [`LOWEST`] of the highest.
 ///
-/// The mean has been taken out, so that what is left in its main lobe is slower than two periods of the
-/// window: it is a peak in bin 1, whose frequency is no better known than that.
+/// A component slower than two periods per window is listed as a peak in bin 1. Its frequency is not known more accurately.
 pub fn peaks(spectrum: &Spectrum, count: usize, floor: f64) -> Vec<Peak> {
     let bins = &spectrum.amplitude;
     if bins.len() < 3 {
@@ -99,7 +98,7 @@ pub fn peaks(spectrum: &Spectrum, count: usize, floor: f64) -> Vec<Peak> {
         .filter(|&k| bins[k] > bins[k - 1] && bins[k] >= bins[k + 1])
         .map(|k| parabola(spectrum, k))
         .collect();
-    // A drift hides nothing.
+    // The peak in bin 1 is excluded, so that a drift does not hide other peaks.
     let highest = found.iter().map(|peak| peak.amplitude).fold(0.0, f64::max);
     found.extend(slow);
     found.retain(|peak| peak.amplitude > floor.max(LOWEST * highest));
@@ -110,8 +109,8 @@ pub fn peaks(spectrum: &Spectrum, count: usize, floor: f64) -> Vec<Peak> {
 
 fn parabola(spectrum: &Spectrum, k: usize) -> Peak {
     let bins = &spectrum.amplitude;
-    // Neighbours of a sine's highest bin have a fifth of it at least: those of rounding, zero perhaps, would send the
-    // parabola to infinity.
+    // The neighbours of a sine's highest bin have at least a fifth of its amplitude. The lower limit prevents an unbounded
+    // result for neighbours that are rounding, or zero.
     let log = |k: usize, least: f64| libm::log(bins[k].max(least));
     let least = f64::max(0.1 * bins[k], f64::MIN_POSITIVE);
     let [a, b, c] = [k - 1, k, k + 1].map(|k| log(k, least));

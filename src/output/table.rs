@@ -1,4 +1,4 @@
-//! The time series of a run as its summary and its plots look at it.
+//! Time series of a run for its summary and plots.
 
 use crate::assembly::lists::Assembly;
 use crate::numeric::clock::to_digits;
@@ -7,30 +7,28 @@ use crate::output::session::Session;
 use crate::output::spectrum::{Spectrum, spectrum};
 use std::ops::Range;
 
-/// All rows of a run, and which of them means and spectra are taken over.
+/// All rows of a run, and the window for means and spectra.
 #[derive(Clone, Debug)]
 pub struct RunTable {
     pub series: Series,
-    /// Time between rows, s.
+    /// Output interval, s.
     pub interval: f64,
-    /// Rows of the window, at equal intervals; empty while the run has not come there.
+    /// Rows of the window, at equal intervals; empty before the run reaches it.
     pub window: Range<usize>,
-    /// Before the names of columns of each bearing: nothing where there is one only.
+    /// Column prefix of each bearing; empty for a single bearing.
     pub bearings: Vec<String>,
-    /// Races, cages, other bodies and sections of those that bend, as far as they may have columns.
+    /// Races, cages, other bodies and watched sections that may have columns.
     pub bodies: Vec<Moving>,
-    /// Name and column of each sensor.
     pub sensors: Vec<(String, String)>,
 }
 
-/// A body as its columns and pictures name it.
+/// Names of a body in columns and plots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moving {
-    /// Columns begin with it, `left_inner`.
+    /// Column prefix, such as `left_inner`.
     pub column: String,
-    /// "left inner race".
+    /// Title, such as "left inner race".
     pub title: String,
-    /// Column of the speed that it spins at.
     pub speed: String,
 }
 
@@ -41,7 +39,7 @@ impl Moving {
     }
 }
 
-/// Bodies of the bearings with these prefixes, then those with labels, then sections that are watched.
+/// Bodies of the bearings with these prefixes, then labelled bodies, then watched sections.
 fn moving(bearings: &[String], assembly: Option<&Assembly>) -> Vec<Moving> {
     let mut bodies = Vec::new();
     for prefix in bearings {
@@ -64,22 +62,22 @@ fn moving(bearings: &[String], assembly: Option<&Assembly>) -> Vec<Moving> {
     bodies
 }
 
-/// Time of row number `row` as people write it, s; rows on the grid are `interval` (s) apart.
+/// Rounded time of row number `row`, s; rows on the grid are `interval` (s) apart.
 pub fn readable(row: usize, time: f64, interval: f64) -> f64 {
     let on_grid = row as f64 * interval;
     to_digits(if (time - on_grid).abs() <= 1e-6 * interval { on_grid } else { time }, 12)
 }
 
 impl RunTable {
-    /// The window starts at `window_start` (s) and ends with the run.
+    /// Table of all rows; the window starts at `window_start` (s) and ends with the run.
     ///
     /// # Errors
-    /// Never for a session's own columns.
+    /// Never for the columns of a session.
     pub fn new(session: &Session, window_start: f64) -> Result<RunTable, SeriesError> {
         let series = session.series()?;
         let interval = session.clock.row_interval();
         let end = session.rows_on_grid();
-        // A start that lies on a row but for rounding takes that row.
+        // A start within rounding of a row includes this row.
         let from = window_start - 1e-6 * interval;
         let times = series.data().column(0);
         let start = times.iter().position(|time| *time >= from).map_or(end, |row| row.min(end));
@@ -94,8 +92,8 @@ impl RunTable {
         Ok(RunTable { series, interval, window: start..end, bearings, bodies, sensors })
     }
 
-    /// Time of a row as people write it, s: of rows on the grid by their number, so that the rounding
-    /// of many steps does not show.
+    /// Time of a row, s; of rows on the grid computed from their number, so that the rounding
+    /// of many steps does not appear.
     pub fn time(&self, row: usize) -> f64 {
         readable(row, self.series.data()[(row, 0)], self.interval)
     }
@@ -111,7 +109,7 @@ impl RunTable {
         Some(self.series.column(channel)?.to_vec())
     }
 
-    /// Columns of work and heat in which anything was done.
+    /// Columns of work and heat that are not zero throughout.
     pub fn works(&self) -> Vec<String> {
         let names = self.series.columns().iter().map(|column| &column.name);
         let of = |name: &&String| {
@@ -127,7 +125,7 @@ impl RunTable {
         found.map_or("", |column| column.unit.as_str())
     }
 
-    /// Spectra of the displacements of all bodies and of what sensors read over the window, as far as they are recorded.
+    /// Spectra of the recorded displacements of all bodies and of the sensors over the window.
     pub fn spectra(&self) -> Vec<(String, Spectrum)> {
         let of = |channel: String| {
             let values = self.windowed(&channel)?;

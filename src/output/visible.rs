@@ -1,15 +1,15 @@
-//! Text from files on its way to a person.
+//! Escaping of text from files before it is printed.
 
 use std::borrow::Cow;
 
-/// The text with characters that a terminal obeys instead of showing written as `\u001b`: control
-/// characters, and those that turn the direction of writing. Line breaks and tabs stay. Inside a JSON
-/// string this is the same string.
+/// Text with characters that control a terminal written as `\u001b`: control
+/// characters, and those that change the direction of writing. Line breaks and tabs are kept. Inside a JSON
+/// string the result is the same string.
 pub fn visible(text: &str) -> Cow<'_, str> {
     escaped(text, |c| commands_terminal(c) && !matches!(c, '\n' | '\t'))
 }
 
-/// The same in one line: line breaks and tabs are written out as well.
+/// Like [`visible`], with line breaks and tabs escaped as well.
 pub fn visible_line(text: &str) -> Cow<'_, str> {
     escaped(text, commands_terminal)
 }

@@ -128,9 +128,9 @@ fn what_cannot_be_compared_is_named() {
     for (reference, candidate, part) in [
         (&nowhere, &results_text, "nowhere"),
         (&results_text, &nowhere, "nowhere"),
-        (&empty, &results_text, "empty is no results folder"),
-        (&results_text, &empty, "empty is no results folder"),
-        (&pack_text, &empty, "empty is no results folder"),
+        (&empty, &results_text, "empty is not a results folder"),
+        (&results_text, &empty, "empty is not a results folder"),
+        (&pack_text, &empty, "empty is not a results folder"),
         (&csv, &summary, "different kinds"),
         (&csv, &results_text, "different kinds"),
         (&csv, &broken, "is not a number"),

@@ -158,7 +158,7 @@ fn two_processes_never_mix_in_one_folder() {
                 continue;
             }
             let message = refusal(arguments, run);
-            let busy = message.contains("another bearing process is writing into");
+            let busy = message.contains("another bearing process is writing to");
             assert!(busy || message.contains("name another folder with --out"), "{message}");
             assert!(message.contains(&out_text), "{message}");
             refusals += usize::from(busy);
@@ -208,7 +208,7 @@ fn every_command_that_writes_claims_its_folder() {
         vec!["pack", &bearing_scene],
     ] {
         let message = refused(&[&arguments[..], &["--out", &out_text]].concat());
-        assert!(message.contains("another bearing process is writing into"), "{message}");
+        assert!(message.contains("another bearing process is writing to"), "{message}");
     }
     // Killed, it holds nothing any more.
     child.kill().unwrap();

@@ -133,12 +133,12 @@ fn fits_and_seats_are_not_taken_in_silence() {
     let scene = place.scene("tight.toml", &scene_text("fit.radial = \"5 um\"", ""));
     let out = place.path("tight");
     let said = succeed(into_folder("statics", &scene, &out, &[]));
-    assert!(said.contains("this pressure is of one node"), "{said}");
+    assert!(said.contains("this pressure is from a single node"), "{said}");
     let summary = solids::json(out.join("summary.json"));
     let notes = summary["mesh"]["notes"].to_string();
     assert!(notes.contains("the races are rigid"), "{notes}");
     let pressure = summary["housing"]["seat"]["peak_pressure_note"].as_str().unwrap();
-    assert!(pressure.starts_with("of one node"), "{pressure}");
+    assert!(pressure.starts_with("from a single node"), "{pressure}");
 }
 
 /// Sizes of a generated mesh have units; the assumed ones of a pillow block are among them.
@@ -200,7 +200,10 @@ fn files_of_fields_are_foretold() {
         "[numerics]\nend = \"1 s\"\noutput_interval = \"0.02 ms\"\nfields_interval = \"1 us\"\n";
     let text = scene_text("method = \"quasi-static\"\nfit.radial = \"2 um\"", numerics);
     let told = lines(&checked(&place, &text).0, "fields").remove(0);
-    assert!(told.contains("50001 files") && told.contains("WARNING: that is much"), "{told}");
+    assert!(
+        told.contains("50001 files") && told.contains("WARNING: this is a large amount"),
+        "{told}"
+    );
 }
 
 #[test]

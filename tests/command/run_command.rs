@@ -504,7 +504,7 @@ fn a_run_is_extended_again_and_again() {
     let shorter =
         crate::command_line_common::bearing(&["run", &at("3 ms"), "--out", &out, "--resume"]);
     assert!(
-        shorter.code == Some(2) && shorter.stderr.contains("has already come to 0.00"),
+        shorter.code == Some(2) && shorter.stderr.contains("has already reached 0.00"),
         "{shorter:?}"
     );
 }

@@ -221,7 +221,7 @@ fn a_run_up_at_a_speed_that_is_held_is_told_not_to_be_drawn() {
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         assert_eq!(out.join("run_up_inner_race.svg").exists(), drawn, "{name}");
         let told = said(&output);
-        assert_eq!(told.matches("nothing is drawn for `run-up`").count(), usize::from(!drawn));
+        assert_eq!(told.matches("`run-up` draws nothing").count(), usize::from(!drawn));
         assert!(out.join("series_inner_race.svg").exists());
     }
 }

@@ -51,7 +51,7 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
     let longer = place.scene("longer.toml", &with_fields("4 ms"));
     let output = into_folder("run", &longer, &whole, &["--resume"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("lacks a part"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("a part of the scene is missing"), "{}", stderr(&output));
 }
 
 /// Equilibria and modes are those of the same elements reduced.

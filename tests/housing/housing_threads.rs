@@ -96,7 +96,7 @@ fn neither_threads_nor_a_break_change_a_bit() {
     let refused =
         state::resume(folder.path(), &lacking, Parts::Housed(Box::new(parts(1))), &request(6e-5));
     let Err(error) = refused else { panic!("a state without a seat") };
-    assert!(error.to_string().contains("it lacks a part that the scene has"), "{error}");
+    assert!(error.to_string().contains("a part of the scene is missing"), "{error}");
 }
 
 #[test]

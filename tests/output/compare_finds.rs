@@ -386,12 +386,12 @@ fn files_that_only_the_candidate_has_are_named() {
     }
     let result = compare(&reference, &candidate, &Options::default()).unwrap();
     assert!(result.equal, "{}", report(&result));
-    assert_eq!(result.only_in_candidate, ["series.csv: all of it"]);
-    assert!(report(&result).contains("only in the candidate:\n  series.csv: all of it"));
+    assert_eq!(result.only_in_candidate, ["series.csv: whole file"]);
+    assert!(report(&result).contains("only in the candidate:\n  series.csv: whole file"));
     // Without its .csv the .npy is the table.
     fs::remove_file(candidate.join("series.csv")).unwrap();
     let result = compare(&reference, &candidate, &Options::default()).unwrap();
-    assert_eq!(result.only_in_candidate, ["series.npy: all of it"]);
+    assert_eq!(result.only_in_candidate, ["series.npy: whole file"]);
 }
 
 /// What holds no results on either side is no difference of results.
@@ -405,7 +405,8 @@ fn what_holds_no_results_is_an_error_and_not_a_difference() {
     fs::write(other.join("notes.txt"), "mine").unwrap();
     for (a, b) in [(&other, &candidate), (&reference, &other), (&other, &other)] {
         let message = refused(a, b);
-        let expected = format!("{} is no results folder: it has no summary.json", other.display());
+        let expected =
+            format!("{} is not a results folder: it has no summary.json", other.display());
         assert!(message.starts_with(&expected), "{message}");
     }
     // A folder of another kind of results.
@@ -431,7 +432,7 @@ fn what_holds_no_results_is_an_error_and_not_a_difference() {
         fs::write(path, r#"{"program": {"name": "bearing", "version": "1"}, "threads": 2}"#)
             .unwrap();
     }
-    assert!(refused(&a, &b).contains("a.json holds nothing to compare: only what says who"));
+    assert!(refused(&a, &b).contains("a.json holds nothing to compare: only the program"));
 }
 
 /// Hundreds of names are no line.
@@ -449,7 +450,7 @@ fn long_lists_of_names_are_wrapped_and_cut() {
     assert!(
         text.contains("\nonly in the candidate:\n  a.json: channel_number_0, channel_number_1, ")
     );
-    assert!(text.ends_with("\n  and 280 more, in the form of --json\n"), "{text}");
+    assert!(text.ends_with("\n  and 280 more, see --json\n"), "{text}");
     let longest = text.lines().map(str::len).max().unwrap();
     assert!(longest <= 110 && text.lines().count() <= 12, "{longest}: {text}");
 }

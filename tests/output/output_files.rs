@@ -354,18 +354,24 @@ fn advice_on_a_full_disk_is_about_what_was_kept() {
     };
     let files = ["series.csv", "fields/fields_000001.vtu"];
     for file in files {
-        assert!(said(file).contains("nothing to go on from was kept"), "{}", said(file));
+        assert!(said(file).contains("there is no state to resume from"), "{}", said(file));
         assert!(!said(file).contains("--resume"), "{}", said(file));
     }
     fs::write(folder.path().join("sweep.json"), "").unwrap();
-    assert!(said("sweep.json").contains("sweep again: it goes on from the points that are done"));
+    assert!(
+        said("sweep.json").contains("run the sweep again: it continues after the finished points")
+    );
     fs::write(folder.path().join("state.json"), "{}").unwrap();
     for file in files {
-        assert!(said(file).contains("go on with --resume"), "{}", said(file));
+        assert!(
+            said(file).contains("continue from the last saved state with --resume"),
+            "{}",
+            said(file)
+        );
     }
     let other = WriteError {
         path: folder.path().join("series.csv"),
         source: std::io::ErrorKind::PermissionDenied.into(),
     };
-    assert!(!other.to_string().contains("Make room"), "{other}");
+    assert!(!other.to_string().contains("Free disk space"), "{other}");
 }

@@ -1,4 +1,4 @@
-//! The two forms in which results are compared: tables of numbers, and trees of named values.
+//! Contents of compared files: tables of numbers, and trees of named values.
 
 use crate::output::compare::CompareError;
 use crate::output::json;
@@ -6,20 +6,17 @@ use crate::output::series::{Series, columns_path};
 use serde_json::Value;
 use std::path::Path;
 
-/// One file's content.
 pub enum Content {
     Table(Series),
     Tree(Vec<Leaf>),
 }
 
-/// One value of a JSON tree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leaf {
-    /// With indices counted from 0: `balls[2].inner.load`.
+    /// Path with indices counted from 0: `balls[2].inner.load`.
     pub path: String,
-    /// Without them: `balls[].inner.load`.
+    /// Path without indices: `balls[].inner.load`.
     pub channel: String,
-    /// Empty if the value has none.
     pub unit: String,
     pub value: LeafValue,
 }
@@ -71,7 +68,7 @@ pub fn read(path: &Path) -> Result<Content, CompareError> {
     }
 }
 
-/// A `.npy` file without column names beside it takes those of the reference, by position.
+/// Names the columns of a `.npy` file without a columns file like those of the reference, by position.
 pub fn name_columns_as(
     candidate: Series,
     path: &Path,
@@ -84,12 +81,11 @@ pub fn name_columns_as(
     Ok(candidate)
 }
 
-/// Bytes of all paths and channels of a tree. Each value carries the names of the parts above it: a
-/// long name above many values would multiply.
+/// Limit on the total size of all paths and channels of a tree, bytes. Every value repeats the names of the parts above
+/// it, so that a long name above many values would need much memory.
 pub const MOST_NAME_BYTES: usize = 32 << 20;
 
-/// The values of a tree in the order in which they are written; `None` where their names take more
-/// than [`MOST_NAME_BYTES`].
+/// Values of a tree in file order; `None` if their names take more than [`MOST_NAME_BYTES`].
 pub fn leaves(tree: &Value) -> Option<Vec<Leaf>> {
     let mut found = Vec::new();
     let mut room = MOST_NAME_BYTES;
@@ -144,7 +140,7 @@ fn collect(
     Some(())
 }
 
-/// `{"value", "unit"}`. A `null` value is a number that JSON could not hold.
+/// Value and unit of a `{"value", "unit"}` object. A `null` value is read as NaN.
 fn quantity(value: &Value) -> Option<(f64, &str)> {
     let map = value.as_object().filter(|map| map.len() == 2)?;
     let unit = map.get("unit")?.as_str()?;

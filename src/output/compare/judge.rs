@@ -1,4 +1,4 @@
-//! Holds the values of one file after another against each other and keeps account.
+//! Comparison of the values of file pairs, with a record of the differences.
 
 use crate::output::compare::channels::{Content, Leaf, LeafValue};
 use crate::output::compare::tolerance::{
@@ -13,7 +13,7 @@ use crate::output::series::Series;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::Path;
 
-/// What the components of one vector have in common: `loads.x` and `loads.y` share `loads.`; a mean
+/// Common part of the names of a vector's components: `loads.` for `loads.x` and `loads.y`. A mean
 /// or an extreme over time belongs to its channel.
 fn vector_stem(channel: &str) -> &str {
     const OVER_TIME: [&str; 4] = [".mean", ".smallest", ".largest", ".peak_to_peak"];
@@ -28,18 +28,17 @@ fn vector_stem(channel: &str) -> &str {
     channel
 }
 
-/// The difference of two directions: one whole turn apart is the same direction, as 315° and −45°.
-/// More turns are counted turns, of which none may go missing.
+/// Difference of two angles, where one whole turn counts as zero: 315° and −45° are the same direction.
+/// More than one turn is not removed, because turns are counted in such channels.
 fn folded(difference: f64, unit: &str) -> f64 {
     let Some(turn) = turn(unit) else { return difference };
     if difference < 1.5 * turn { difference.min((difference - turn).abs()) } else { difference }
 }
 
-/// Position of a difference: row (or place in the tree) and column; 0 comes before all rows.
+/// Position of a difference: row (or position in the tree) and column; 0 comes before all rows.
 pub type Order = (usize, usize);
 
 pub struct Judge<'a> {
-    /// Name of the file being compared.
     pub file: String,
     tolerances: &'a Tolerances,
     default_class: Option<ToleranceClass>,
@@ -98,7 +97,7 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// A floor for a unit that no channel has: misspelt, or of another scale (`mm` for `m`).
+    /// Rejects floors for units that no channel has: misspelt, or of another scale (`mm` for `m`).
     fn refuse_unused_units(&self) -> Result<(), ToleranceError> {
         let units: BTreeSet<&str> = self.channels.iter().map(|c| c.unit.as_str()).collect();
         for (unit, _) in self.given.iter().flat_map(|given| &given.floors) {
@@ -111,7 +110,7 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// Ticks off the tolerances that a file makes use of.
+    /// Marks the tolerances that a file uses.
     pub fn note_names(&mut self, content: &Content) {
         let names: Vec<&str> = match content {
             Content::Table(series) => series.columns().iter().map(|c| c.name.as_str()).collect(),
@@ -124,12 +123,11 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Notes what of the present file is not compared.
+    /// Lists a part of the present file as not compared.
     pub fn leave_out(&mut self, what: &str) {
         self.ignored.push(format!("{}: {what}", self.file));
     }
 
-    /// Opens a channel, or notes that it is not compared.
     fn open(&mut self, channel: &str, unit: &str) -> Option<Tolerance> {
         let named = self.tolerances.entry(channel);
         if let Some((used, _)) = named {
@@ -293,7 +291,7 @@ impl<'a> Judge<'a> {
         }
         let places = unloaded::unloaded_places(reference);
         let mut left_out = false;
-        // Channel → its number in `self.channels` and its tolerance, `None` if it is left out.
+        // Channel → its number in `self.channels` and its tolerance, `None` if it is not compared.
         let mut opened: BTreeMap<&str, Option<(usize, Tolerance)>> = BTreeMap::new();
         for (position, leaf) in reference.iter().enumerate() {
             let channel = leaf.channel.as_str();
@@ -309,7 +307,7 @@ impl<'a> Judge<'a> {
             let Some(other) = found.get(leaf.path.as_str()) else {
                 if is_default_of_key(channel) {
                     self.leave_out(&format!(
-                        "{channel}, a default where the candidate's scene says it"
+                        "{channel}, default of a key that the candidate's scene sets"
                     ));
                     continue;
                 }
@@ -344,7 +342,7 @@ impl<'a> Judge<'a> {
         self.further_leaves(reference, candidate, &opened);
     }
 
-    /// A difference that is none of numbers: unit, kind of value, string, integer.
+    /// Difference other than a numerical one: unit, kind of value, string, integer.
     fn unlike(&self, reference: &Leaf, candidate: &Leaf) -> Option<DivergenceKind> {
         if reference.unit != candidate.unit {
             let (reference, candidate) = (reference.unit.clone(), candidate.unit.clone());
@@ -361,7 +359,7 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// A list that is longer in the candidate is a difference; a further channel is only listed.
+    /// A list that is longer in the candidate is a difference; an additional channel is only listed.
     fn further_leaves(
         &mut self,
         reference: &[Leaf],
@@ -389,7 +387,7 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// A choice of the program: any finite number will do, unless the same bits are asked for.
+/// Returns whether any finite value passes because the program was free to choose it; never for exact tolerances.
 fn is_arbitrary(tolerance: Tolerance, reference: f64, candidate: f64) -> bool {
     !tolerance.is_exact() && reference.is_finite() && candidate.is_finite()
 }

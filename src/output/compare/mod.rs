@@ -1,23 +1,22 @@
-//! `bearing compare REFERENCE CANDIDATE`: does the candidate agree, and where does it first depart?
+//! `bearing compare REFERENCE CANDIDATE`: comparison of results, with the first place where they differ.
 //!
-//! Compared are two `.csv`, two `.npy` (or one of each), two `.json` files, or two folders: then
-//! every `.csv` and `.npy` file and `summary.json` of the reference. A file, channel or row that
-//! is missing in the candidate, another unit, NaN or infinity on either side: all are
-//! differences. What only the candidate has is listed and does no harm, except further rows. A folder
-//! without any of these files, two folders that share none, and a `.json` file without named values are
-//! no results: an error.
+//! The arguments are two `.csv`, two `.npy` (or one of each), two `.json` files, or two folders. Of folders,
+//! every `.csv` and `.npy` file and `summary.json` of the reference are compared. A file, channel or row that
+//! is missing in the candidate, another unit, NaN or infinity on either side are differences. Additional
+//! files and channels of the candidate are listed and are no difference; additional rows are one. A folder
+//! without any of these files, two folders without a common file, and a `.json` file without named values are
+//! an error.
 //!
-//! Strings, booleans and bare integers must be equal; numbers may differ by their
-//! [`tolerance`]. Never compared, because they say how and not what: names in
-//! [`IGNORED_NAMES`] and those that start with [`IGNORED_PREFIX`], and [`PROGRAM_NAME`]; nor, and that is said, fields
-//! in `.vtu` files.
+//! Strings, booleans and bare integers must be equal; numbers may differ by their [`tolerance`]. Names in
+//! [`IGNORED_NAMES`], names that start with [`IGNORED_PREFIX`], and [`PROGRAM_NAME`] are never compared. Fields
+//! in `.vtu` files are not compared either, and the report lists them.
 //!
-//! Two things more are no difference. A `.npy` file that the candidate lacks while both sides have
-//! the `.csv` file of the same name: one form of a table is enough. And, in every class but
-//! `f64-exact`, where a ball that carries nothing in the reference is shown: see [`unloaded`].
+//! Two more things are no difference. The candidate may lack a `.npy` file if both sides have the `.csv` file of the
+//! same name. In every class but `f64-exact`, the position of a ball that carries no load in the reference is not
+//! compared: see [`unloaded`].
 //!
-//! Runs of different accuracy are compared with a [`GivenTolerance`]; what then says how they were
-//! computed is left out as well: see [`is_about_steps`].
+//! Runs of different accuracy are compared with a [`GivenTolerance`]. Channels on the time stepping are then not
+//! compared: see [`is_about_steps`].
 pub mod channels;
 mod judge;
 pub mod report;
@@ -36,21 +35,18 @@ use tolerance::{GivenTolerance, ToleranceClass, ToleranceError, Tolerances};
 
 pub use report::{report, to_json};
 
-/// Parts and columns with these names are never compared.
 pub const IGNORED_NAMES: [&str; 2] = ["version", "threads"];
-/// Nor who computed it.
 pub const PROGRAM_NAME: &str = "program.name";
-/// Nor those whose name, or the name of a part above them, starts with this (wall time).
+/// Values whose name, or the name of a part above them, starts with this are never compared (wall time).
 pub const IGNORED_PREFIX: &str = "seconds";
 
-/// What the user may choose.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Class of channels that the tolerances do not name; goes before the one in the file.
+    /// Class of channels that the tolerances do not name; takes precedence over the one in the file.
     pub default_class: Option<ToleranceClass>,
-    /// Used instead of the `tolerances.json` in the reference folder.
+    /// Replaces the `tolerances.json` in the reference folder.
     pub tolerances: Option<Tolerances>,
-    /// Numbers in place of a class, for results of different accuracy: goes before both classes.
+    /// Tolerances for results of different accuracy; takes precedence over both classes.
     pub given: Option<GivenTolerance>,
 }
 
@@ -61,7 +57,7 @@ pub enum CompareError {
     #[error("cannot read {} as JSON: {source}", path.display())]
     Json { path: PathBuf, source: JsonError },
     #[error(
-        "{}: the names of its values are too long together (more than {MOST_NAME_BYTES} bytes)",
+        "{}: the names of its values are longer than {MOST_NAME_BYTES} bytes in total",
         path.display()
     )]
     Names { path: PathBuf },
@@ -72,7 +68,7 @@ pub enum CompareError {
     #[error("{} does not exist; check the path and the folder you are in", path.display())]
     Missing { path: PathBuf },
     #[error(
-        "{} holds {of_reference}, {} holds {of_candidate}: results of different kinds are not compared",
+        "{} holds {of_reference}, {} holds {of_candidate}: results of different kinds cannot be compared",
         reference.display(), candidate.display()
     )]
     OtherKinds {
@@ -81,21 +77,21 @@ pub enum CompareError {
         of_reference: &'static str,
         of_candidate: &'static str,
     },
-    #[error("{}: only .csv, .npy, .json files and folders are compared", path.display())]
+    #[error("{}: only .csv, .npy, .json files and folders can be compared", path.display())]
     UnknownKind { path: PathBuf },
     #[error("{} and {} hold different kinds of results", reference.display(), candidate.display())]
     KindMismatch { reference: PathBuf, candidate: PathBuf },
     #[error(
-        "{} holds nothing to compare: only what says who computed it and how long it took",
+        "{} holds nothing to compare: only the program's name, version and run time",
         reference.display()
     )]
     NothingToCompare { reference: PathBuf },
     #[error(
-        "{} is no results folder: it has no summary.json, .csv or .npy file", path.display()
+        "{} is not a results folder: it has no summary.json, .csv or .npy file", path.display()
     )]
     NoResults { path: PathBuf },
     #[error(
-        "{} and {} hold no file of the same name, so that nothing can be compared: the first has {}, the \
+        "{} and {} have no file of the same name: the first has {}, the \
          second {}",
         reference.display(), candidate.display(), of_reference.join(", "), of_candidate.join(", ")
     )]
@@ -109,25 +105,22 @@ pub enum CompareError {
     NoValues { path: PathBuf },
 }
 
-/// Outcome of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     pub equal: bool,
-    /// Values compared.
     pub checked: usize,
-    /// Differences found, of any kind.
+    /// Number of differences of any kind.
     pub differing: usize,
-    /// The earliest: files by name with tables first, rows before columns, a tree as written.
+    /// The first difference: files by name with tables first, rows before columns, a tree in file order.
     pub first_divergence: Option<Divergence>,
     /// In the order of the reference.
     pub channels: Vec<ChannelResult>,
-    /// `file: channel` of what was left out, by name or by class.
+    /// `file: channel` of the values not compared, by name or by class.
     pub ignored: Vec<String>,
-    /// `file: channel` of what only the candidate has.
+    /// `file: channel` of the channels that only the candidate has.
     pub only_in_candidate: Vec<String>,
 }
 
-/// One channel of one file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelResult {
     pub file: String,
@@ -137,7 +130,7 @@ pub struct ChannelResult {
     pub class: &'static str,
     pub checked: usize,
     pub differing: usize,
-    /// The largest difference measured by what is allowed; `None` for strings and integers.
+    /// Largest ratio of difference to tolerance; `None` for strings and integers.
     pub worst: Option<Worst>,
 }
 
@@ -146,11 +139,10 @@ pub struct Worst {
     pub place: String,
     pub difference: f64,
     pub allowed: f64,
-    /// difference / allowed; infinite where nothing is allowed or a value is not finite.
+    /// difference / allowed; infinite if the tolerance is zero or a value is not finite.
     pub ratio: f64,
 }
 
-/// One place where the candidate departs from the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
     pub file: String,
@@ -165,7 +157,7 @@ pub struct Divergence {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum DivergenceKind {
-    /// Beyond tolerance, or not finite on one side at least.
+    /// Beyond tolerance, or not finite on at least one side.
     Value {
         reference: f64,
         candidate: f64,
@@ -181,7 +173,6 @@ pub enum DivergenceKind {
         reference: String,
         candidate: String,
     },
-    /// Rows of a table.
     Length {
         reference: usize,
         candidate: usize,
@@ -195,8 +186,8 @@ pub enum DivergenceKind {
 /// Compares two files or two folders.
 ///
 /// # Errors
-/// A file that cannot be read or makes no sense, tolerances that cannot be used, a reference with
-/// nothing in it. A difference is no error: see [`Comparison::equal`].
+/// A file that cannot be read or is not valid, invalid tolerances, an empty reference.
+/// A difference is not an error: see [`Comparison::equal`].
 pub fn compare(
     reference: &Path,
     candidate: &Path,
@@ -214,9 +205,9 @@ pub fn compare(
     }
     let mut only_in_candidate = Vec::new();
     let pairs = if reference.is_dir() && candidate.is_dir() {
-        let beside = reference.join("tolerances.json");
-        if options.tolerances.is_none() && beside.exists() {
-            tolerances = Tolerances::read(&beside)?;
+        let default = reference.join("tolerances.json");
+        if options.tolerances.is_none() && default.exists() {
+            tolerances = Tolerances::read(&default)?;
         }
         refuse_other_kinds(reference, candidate)?;
         let named = |name: String| (reference.join(&name), candidate.join(&name), name);
@@ -274,14 +265,14 @@ pub fn compare(
     judge.finish(reference)
 }
 
-/// Of folders of a run and of an equilibrium every channel would be missing.
+/// Rejects folders of different kinds, such as a run and an equilibrium, where every channel would be missing.
 fn refuse_other_kinds(reference: &Path, candidate: &Path) -> Result<(), CompareError> {
     let kind = |folder: &Path| {
         let summary = json::read(&folder.join("summary.json")).ok()?;
         let kind = summary["kind"].as_str()?;
-        let families: [(&str, &'static str); 3] =
+        let kinds: [(&str, &'static str); 3] =
             [("run", "a run"), ("static", "an equilibrium"), ("modes", "natural modes")];
-        families.into_iter().find(|(word, _)| kind.contains(word)).map(|(_, said)| said)
+        kinds.into_iter().find(|(word, _)| kind.contains(word)).map(|(_, name)| name)
     };
     match (kind(reference), kind(candidate)) {
         (Some(of_reference), Some(of_candidate)) if of_reference != of_candidate => {
@@ -292,8 +283,8 @@ fn refuse_other_kinds(reference: &Path, candidate: &Path) -> Result<(), CompareE
     }
 }
 
-/// Files of the reference folder, of which the candidate has one at least, and what the candidate has besides; a table
-/// that is there as `.csv` is no other as `.npy`.
+/// Files of the reference folder, at least one of which the candidate has, and the additional files of the candidate; a `.npy`
+/// file is not additional if the reference has its table as `.csv`.
 fn common_folders(reference: &Path, candidate: &Path) -> Result<[Vec<String>; 2], CompareError> {
     let [of_reference, of_candidate] = [known_files(reference)?, known_files(candidate)?];
     for (path, files) in [(reference, &of_reference), (candidate, &of_candidate)] {
@@ -306,7 +297,7 @@ fn common_folders(reference: &Path, candidate: &Path) -> Result<[Vec<String>; 2]
             let is_other_form = name.ends_with(".npy") && is_given_as_csv(&candidate.join(name));
             !of_reference.contains(name) && !is_other_form
         };
-        let more = of_candidate.iter().filter(is_new).map(|name| format!("{name}: all of it"));
+        let more = of_candidate.iter().filter(is_new).map(|name| format!("{name}: whole file"));
         let more = more.collect();
         return Ok([of_reference, more]);
     }
@@ -314,7 +305,7 @@ fn common_folders(reference: &Path, candidate: &Path) -> Result<[Vec<String>; 2]
     Err(CompareError::NoCommonFile { reference, candidate, of_reference, of_candidate })
 }
 
-/// A `.npy` file beside which lies the `.csv` file of the same table.
+/// True for a `.npy` file next to the `.csv` file of the same table.
 fn is_given_as_csv(path: &Path) -> bool {
     path.extension().is_some_and(|kind| kind == "npy") && path.with_extension("csv").exists()
 }
@@ -342,7 +333,7 @@ pub fn known_files(folder: &Path) -> Result<Vec<String>, CompareError> {
     Ok(names)
 }
 
-/// A channel that is left out by name; see [`IGNORED_NAMES`], [`IGNORED_PREFIX`] and
+/// True for a channel that is not compared because of its name; see [`IGNORED_NAMES`], [`IGNORED_PREFIX`] and
 /// [`PROGRAM_NAME`].
 pub fn is_ignored_by_name(channel: &str) -> bool {
     let mut parts = channel.split('.').map(|part| part.trim_end_matches("[]"));
@@ -351,21 +342,20 @@ pub fn is_ignored_by_name(channel: &str) -> bool {
         || parts.next_back().is_some_and(|last| IGNORED_NAMES.contains(&last))
 }
 
-/// A channel that says that a key of the scene was left to its default: one that writes the same value says nothing of
-/// it, and what comes of the value is compared where it counts.
+/// True for a channel that records the default of a scene key. A scene that writes the same value explicitly lacks this
+/// channel but has the same results.
 pub fn is_default_of_key(channel: &str) -> bool {
     let key = channel.strip_prefix("assumptions.");
     key.is_some_and(|key| keys::find_named(key).is_some() || keys::find_table(key).is_some())
 }
 
-/// A channel that says how a run was stepped and not where the bearing went: it differs between runs
-/// of different accuracy.
+/// True for a channel about the time stepping rather than the motion: it differs between runs of different accuracy.
 pub fn is_about_steps(channel: &str) -> bool {
     const SECTIONS: [&str; 5] = ["step", "work", "plan", "stages", "assumptions"];
     const LAST: [&str; 3] = ["steps_per_row", "energy_residual", "largest_residual"];
     let mut parts = channel.split('.').map(|part| part.trim_end_matches("[]"));
     let of_residual = parts.clone().any(|part| LAST.contains(&part));
-    // Which of nearly equal values is the largest, the steps decide.
+    // The time steps decide which of several nearly equal values is the largest.
     let place = channel.starts_with("extremes.")
         && [".time", ".ball", ".contact_angle"].iter().any(|last| channel.ends_with(last));
     of_residual

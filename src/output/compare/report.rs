@@ -1,16 +1,15 @@
-//! A comparison as text for people and as JSON for programs.
+//! Report of a comparison: text and JSON.
 
 use crate::output::compare::{ChannelResult, Comparison, Divergence, DivergenceKind};
 use crate::output::visible::visible_line;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Channels listed in the text; the JSON form has all.
+/// Number of channels listed in the text; the JSON form has all.
 const LISTED: usize = 20;
 /// Characters of a line that lists names, unless one name is longer.
 const WIDTH: usize = 100;
 
-/// What `bearing compare` prints.
 pub fn report(comparison: &Comparison) -> String {
     let mut text = String::new();
     match &comparison.first_divergence {
@@ -32,7 +31,7 @@ fn equal(text: &mut String, comparison: &Comparison) {
         line(
             text,
             format!(
-                "closest to its limit: {}, {} at {}, {:.2} of what is allowed ({})",
+                "largest difference relative to tolerance: {}, {} at {}, {:.2} of the tolerance ({})",
                 channel.file,
                 name(&channel.channel, &channel.unit),
                 worst.place,
@@ -75,7 +74,7 @@ fn different(text: &mut String, comparison: &Comparison, first: &Divergence) {
         if let Some(worst) = channel.worst.as_ref().filter(|worst| worst.ratio > 0.0) {
             let _ = write!(
                 row,
-                ", worst {:e} against {:e} allowed at {}",
+                ", largest {:e}, allowed {:e}, at {}",
                 worst.difference, worst.allowed, worst.place
             );
         }
@@ -106,7 +105,7 @@ fn kind_text(kind: &DivergenceKind) -> String {
     }
 }
 
-/// All of it, for programs; numbers that are not finite appear as strings.
+/// Complete report as JSON; numbers that are not finite are strings.
 pub fn to_json(comparison: &Comparison) -> Value {
     let channels: Vec<Value> = comparison.channels.iter().map(channel_json).collect();
     json!({
@@ -189,7 +188,7 @@ fn name(channel: &str, unit: &str) -> String {
     }
 }
 
-/// `file: channel` items, a file at a time in lines of a screen's width; the first of them where they are many.
+/// Lists `file: channel` items by file in lines of the width of a screen; long lists are cut.
 fn list(text: &mut String, title: &str, items: &[String]) {
     if items.is_empty() {
         return;
@@ -212,12 +211,12 @@ fn list(text: &mut String, title: &str, items: &[String]) {
     }
     line(text, row);
     if items.len() > LISTED {
-        line(text, format!("  and {} more, in the form of --json", items.len() - LISTED));
+        line(text, format!("  and {} more, see --json", items.len() - LISTED));
     }
 }
 
 fn line(text: &mut String, content: String) {
-    // A key of a file may hold a line break, and so pass for a line of this report.
+    // A key of a file may contain a line break, which could imitate a line of this report.
     text.push_str(&visible_line(&content));
     text.push('\n');
 }

@@ -1,8 +1,8 @@
-//! How far a candidate may be from the reference.
+//! Tolerances of a comparison.
 //!
 //! allowed = absolute floor + relative · |reference| + scale relative · (largest |reference| of
-//! the channel; the components of one vector share theirs). Where a part of the scale is given by hand,
-//! the scale of an angle is one turn at most: an angle that counts turns has no size of its own.
+//! the channel; the components of one vector share theirs). With a [`GivenTolerance`] the scale of an angle is
+//! at most one turn, because the size of an angle that counts turns is arbitrary.
 
 use crate::scene::text::input_file;
 use crate::scene::text::input_file::InputError;
@@ -11,10 +11,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Bytes of the largest `tolerances.json`; it has one line a channel.
+/// Size limit of `tolerances.json`, bytes; it has one line per channel.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// A named set of tolerance numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceClass {
@@ -22,7 +21,7 @@ pub enum ToleranceClass {
     F64Exact,
     /// f64 arithmetic in another order: another compiler, processor, solver or summation order.
     F64Reordered,
-    /// f32 somewhere on the path, f64 where it matters.
+    /// f32 in parts of the computation, f64 where it matters.
     Mixed,
     /// Not compared, and listed as such in the report.
     Ignored,
@@ -36,7 +35,7 @@ impl ToleranceClass {
         ToleranceClass::Ignored,
     ];
 
-    /// As written in `tolerances.json` and on the command line.
+    /// Name in `tolerances.json` and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             ToleranceClass::F64Exact => "f64-exact",
@@ -50,21 +49,21 @@ impl ToleranceClass {
         ToleranceClass::ALL.into_iter().find(|class| class.name() == name)
     }
 
-    /// The class's numbers for a channel of this unit; `None` for [`ToleranceClass::Ignored`].
+    /// Tolerance of the class for a channel of this unit; `None` for [`ToleranceClass::Ignored`].
     pub fn tolerance(self, unit: &str) -> Option<Tolerance> {
         let (relative, share) = match self {
             ToleranceClass::F64Exact => (0.0, 0.0),
-            // A sum of n terms taken in another order moves by up to n ε of the largest term: 1e-10
-            // for the 1e6 terms of a large mesh. A quantity that follows from it through a stiff
-            // contact law moves ten times as much; hence 1e-9.
+            // A sum of n terms in another order differs by up to n ε of the largest term: 1e-10 for the
+            // 1e6 terms of a large mesh. A quantity that follows from it through a stiff contact law
+            // differs by ten times as much: 1e-9.
             ToleranceClass::F64Reordered => (1e-9, 1e-10),
-            // f32 carries 6e-8; some hundred operations without cancellation stay within 1e-5 of
-            // the channel's scale, and the load's exponent 3/2 with ten for safety gives 1e-4.
+            // f32 has a relative precision of 6e-8; some hundred operations without cancellation stay within
+            // 1e-5 of the channel's scale. The load's exponent 3/2 and a safety factor of ten give 1e-4.
             ToleranceClass::Mixed => (1e-4, 1e-5),
             ToleranceClass::Ignored => return None,
         };
-        // The scale term is for values that cancel (the small component of a large vector); the
-        // floor is for channels that are zero but for rounding, where nothing else is above zero.
+        // The scale term is for values that cancel (the small component of a large vector); the floor is
+        // for channels that are zero except for rounding, where the other terms vanish.
         Some(Tolerance {
             absolute_floor: share * ordinary_magnitude(unit),
             relative,
@@ -75,13 +74,13 @@ impl ToleranceClass {
     }
 }
 
-/// A small but ordinary value of a quantity in a bearing; the absolute floor is a fraction of it.
-/// Zero for dimensionless and unknown units: no floor unless `tolerances.json` gives one.
+/// Small but ordinary value of a quantity in a bearing; the absolute floor is a fraction of it.
+/// Zero for dimensionless and unknown units: no floor unless `tolerances.json` has one.
 fn ordinary_magnitude(unit: &str) -> f64 {
     match unit {
         // A position 30 mm from the axis is rounded by up to 7e-18 m in each operation. An approach
-        // or a displacement is what is left of a few hundred of them: within 1e-14 m, the floor of
-        // f64-reordered, whatever its own size.
+        // or a displacement is the small result of a few hundred of them and has an error up to 1e-14 m,
+        // the floor of f64-reordered, regardless of its own size.
         "m" => 1e-4,
         "mm" => 1e-1,             // the same
         "um" => 100.0,            // the same
@@ -112,7 +111,7 @@ pub fn turn(unit: &str) -> Option<f64> {
     }
 }
 
-/// The three numbers, and the largest scale that counts; the floor and that are in the channel's own unit.
+/// Three tolerance terms and the largest scale; the floor and the scale are in the channel's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     pub absolute_floor: f64,
@@ -122,25 +121,25 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Largest difference that passes, given the largest |reference| of the channel.
+    /// Largest difference that passes; `scale` is the largest |reference| of the channel.
     pub fn allowed(&self, reference: f64, scale: f64) -> f64 {
         let scale = scale.min(self.largest_scale);
         self.absolute_floor + self.relative * reference.abs() + self.scale_relative * scale
     }
 
-    /// All three are zero: bits are compared, so that −0 and 0 differ.
+    /// True if all three terms are zero: then bits are compared, so that −0 and 0 differ.
     pub fn is_exact(&self) -> bool {
         self.absolute_floor == 0.0 && self.relative == 0.0 && self.scale_relative == 0.0
     }
 }
 
-/// Numbers in place of a class.
+/// Tolerance set by the user instead of a class.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GivenTolerance {
-    /// Of the channel's scale: its largest |reference|, shared by the components of one vector; of an
-    /// angle one turn at most.
+    /// Fraction of the channel's scale: its largest |reference|, shared by the components of one vector; for
+    /// an angle at most one turn.
     pub scale_relative: f64,
-    /// Floors, each for the channels of a unit; others have one for rounding.
+    /// Floors by unit; channels of other units have a floor for rounding.
     pub floors: Vec<(String, f64)>,
 }
 
@@ -162,8 +161,8 @@ impl GivenTolerance {
     }
 
     pub fn tolerance(&self, unit: &str) -> Tolerance {
-        // Channels that are zero but for rounding have no scale of their own: a thousandth of the part
-        // of a small but ordinary value is far below what anybody looks at, and above rounding.
+        // Channels that are zero except for rounding have no scale of their own. A thousandth of this fraction
+        // of a small but ordinary value is negligible and above rounding.
         let least = 1e-3 * self.scale_relative * ordinary_magnitude(unit);
         let floor =
             self.floors.iter().find(|(of, _)| of == unit).map_or(least, |(_, floor)| *floor);
@@ -176,7 +175,7 @@ impl GivenTolerance {
     }
 }
 
-/// `tolerances.json`, as a case pack ships it.
+/// Content of `tolerances.json`, as in a case pack.
 ///
 /// ```json
 /// {
@@ -188,12 +187,12 @@ impl GivenTolerance {
 ///   }
 /// }
 /// ```
-/// A name stands for the channel and everything below it (`stiffness` for `stiffness.x.y`); the
-/// longest name that fits decides. Array indices are left out: `balls[].inner.load`.
+/// A name applies to the channel and everything below it (`stiffness` for `stiffness.x.y`); the
+/// longest matching name decides. Array indices are omitted: `balls[].inner.load`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerances {
-    /// For channels not named; `f64-reordered` if left out.
+    /// Class of channels that are not named; `f64-reordered` by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub class: Option<ToleranceClass>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -225,15 +224,15 @@ pub enum ToleranceError {
     Json { path: PathBuf, source: serde_json::Error },
     #[error("tolerance of {channel:?}: {number} is {value}; allowed are finite numbers >= 0")]
     Number { channel: String, number: &'static str, value: f64 },
-    #[error("tolerance of {channel:?} says \"ignored\" and gives numbers; only one can hold")]
+    #[error("tolerance of {channel:?} has class \"ignored\" and numbers; write one of them")]
     IgnoredWithNumbers { channel: String },
     #[error("a default class of \"ignored\" would compare nothing")]
     IgnoredByDefault,
-    #[error("tolerances name {channel:?}, which is no channel of the reference")]
+    #[error("tolerances name {channel:?}, which is not a channel of the reference")]
     Unused { channel: String },
     #[error(
-        "an absolute tolerance is given for the unit {unit:?}, which no compared channel has; there \
-         are: {}", known.join(", ")
+        "no compared channel has the unit {unit:?} of an absolute tolerance; \
+         units are: {}", known.join(", ")
     )]
     UnusedUnit { unit: String, known: Vec<String> },
 }
@@ -273,7 +272,7 @@ impl Tolerances {
         Ok(())
     }
 
-    /// The entry for a channel: the longest name that is the channel or a part above it.
+    /// Entry for a channel: the longest name that is the channel or a part above it.
     pub fn entry(&self, channel: &str) -> Option<(&str, &ChannelTolerance)> {
         self.channels
             .iter()
@@ -286,8 +285,8 @@ impl Tolerances {
             .map(|(name, entry)| (name.as_str(), entry))
     }
 
-    /// Class name and numbers for a channel; `None` numbers if the channel is not compared.
-    /// `default_class` (given by the user) goes before the file's own default.
+    /// Class name and tolerance of a channel; the tolerance is `None` if the channel is not compared.
+    /// `default_class` (set by the user) takes precedence over the default in the file.
     pub fn of_channel(
         &self,
         channel: &str,

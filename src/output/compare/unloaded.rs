@@ -1,17 +1,16 @@
-//! Where a ball without load is shown.
+//! Positions of balls without load, which are not compared.
 //!
-//! A ball that carries nothing has room between the races, and no law says where in it. A program
-//! shows it somewhere, and its position, the gaps to both races and the angles under which it sees
-//! them follow from that choice. They are not held against a candidate that chose another place;
-//! that its loads are zero is.
+//! The position of a ball that carries no load is not determined: it has clearance to both races. Its position, the
+//! gaps to both races and its contact angles are a choice of the program. They are not compared; its loads, which are
+//! zero, are.
 //!
-//! A ball with one loaded contact (its weight, say) is no such ball: its place is determined.
+//! A ball with one loaded contact, under its weight for example, does not count: its position is determined.
 
 use crate::output::compare::channels::{Leaf, LeafValue};
 use crate::output::series::Series;
 use std::collections::HashSet;
 
-/// What follows from a ball's place alone; as in `series.csv`.
+/// Channels that follow from a ball's position alone, as in `series.csv`.
 const PLACE: [&str; 7] = [
     "position_x",
     "position_y",
@@ -22,10 +21,10 @@ const PLACE: [&str; 7] = [
     "outer_contact_angle",
 ];
 
-/// What a report says of the values left out.
+/// Text of the report for the values not compared.
 pub const NOTE: &str = "position, approach and contact_angle of balls without load";
 
-/// For each row of a table of balls, whether the ball carries nothing; `None` for other tables.
+/// For each row of a table of balls, true if the ball carries no load; `None` for other tables.
 pub fn unloaded_rows(series: &Series) -> Option<Vec<bool>> {
     series.column("ball")?;
     let (inner, outer) = (series.column("inner_load")?, series.column("outer_load")?);
@@ -38,12 +37,12 @@ pub fn unloaded_rows(series: &Series) -> Option<Vec<bool>> {
     )
 }
 
-/// Whether a column says only where a ball is.
+/// Returns whether a column follows from the position of a ball alone.
 pub fn is_place(column: &str) -> bool {
     PLACE.contains(&column)
 }
 
-/// Paths of the leaves of a summary that say where a ball is which carries nothing.
+/// Paths of the leaves of a summary that follow from the position of a ball without load.
 pub fn unloaded_places(leaves: &[Leaf]) -> HashSet<&str> {
     let idle_contacts: HashSet<&str> = leaves
         .iter()

@@ -1,4 +1,4 @@
-//! The bore of a housing under its bearing: force and pressure as fields, and a table of its nodes.
+//! Contact of a race with the bore of its housing: force and pressure fields, and a table of the bore nodes.
 
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::{Vec3, dot, scale};
@@ -11,28 +11,27 @@ use crate::solids::condensation::CondensedBore;
 use crate::solids::model::SolidModel;
 use ndarray::Array2;
 
-/// A node of the bore and what the race does to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoreNodeState {
     pub node: u32,
-    /// Undeformed, m.
+    /// Undeformed position, m.
     pub place: Vec3,
     /// m².
     pub area: f64,
-    /// Into the race, m; negative is a gap.
+    /// Penetration into the race, m; negative for a gap.
     pub penetration: f64,
-    /// On the node, N.
+    /// Contact force on the node, N.
     pub force: Vec3,
 }
 
-/// Nodes of the bores of a solid now, with `model` its own: of explicit steps those that touch; empty
-/// where there is no bore, or no equilibrium yet.
+/// Bore nodes of a solid at the present time; `model` is the model of this solid. With explicit steps only contact nodes;
+/// empty without a bore or before the first equilibrium.
 pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<BoreNodeState> {
     match motion {
         Motion::Solid(_) | Motion::Rubber(_) => Vec::new(),
         Motion::Bearing(simulation) => seat_nodes(&simulation.system, solid),
-        Motion::QuasiStaticSequence(course) => {
-            match (&course.latest, course.problem.seats.get(solid)) {
+        Motion::QuasiStaticSequence(sequence) => {
+            match (&sequence.latest, sequence.problem.seats.get(solid)) {
                 (Some(moment), Some(seat)) => {
                     condensed_nodes(model, seat.bore, &moment.solution.seats[solid])
                 }
@@ -55,7 +54,7 @@ pub fn bore_nodes(motion: &Motion, solid: usize, model: &SolidModel) -> Vec<Bore
     }
 }
 
-/// Nodes that touch in the first seat in a reduced solid; none without one.
+/// Contact nodes of the first fit in a reduced solid; empty without one.
 fn seat_nodes(system: &System, solid: usize) -> Vec<BoreNodeState> {
     let mut seats = system.assembly.seats.iter().zip(&system.seats);
     let Some((seat, now)) = seats.find(|(seat, _)| seat.solid == solid) else {
@@ -96,7 +95,7 @@ pub fn condensed_nodes(
         .collect()
 }
 
-/// Forces (N, three a node) and pressures (Pa) on the nodes of a mesh that has so many.
+/// Forces (N) and pressures (Pa) at all `nodes` nodes of a mesh.
 pub(super) fn on_nodes(bore: &[BoreNodeState], nodes: usize) -> (Vec<Vec3>, Vec<f64>) {
     let (mut forces, mut pressure) = (vec![[0.0; 3]; nodes], vec![0.0; nodes]);
     for state in bore {
@@ -110,7 +109,7 @@ fn pressure_of(state: &BoreNodeState) -> f64 {
     dot(state.force, state.force).sqrt() / state.area
 }
 
-/// One row a node: place, azimuth from +Y towards +Z, area, penetration, force, pressure.
+/// Table with one row per node: position, azimuth from +Y towards +Z, area, penetration, force, pressure.
 ///
 /// # Errors
 /// Never for these columns.

@@ -1,4 +1,4 @@
-//! Fields of a solid as ParaView opens them: displacement, velocity, stress, and what a race does to its bore.
+//! Fields of a solid as VTK files for ParaView: displacement, velocity, stress, contact force on the bore.
 
 pub mod bore;
 pub mod size;
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Folder of the `.vtu` files, and the list of them beside it.
+/// Folder of the `.vtu` files, and their list next to it.
 pub const FOLDER: &str = "fields";
 pub const LIST: &str = "fields.pvd";
 
@@ -34,17 +34,16 @@ pub enum FieldError {
 /// Stress of a deformed solid, Pa.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stresses {
-    /// Cauchy stress of each element, the mean over its points by volume: XX YY ZZ XY YZ ZX.
+    /// Cauchy stress of each element, volume average over its integration points: XX YY ZZ XY YZ ZX.
     pub cell: Vec<Sym3>,
     pub cell_von_mises: Vec<f64>,
-    /// Stress at nodes as [`nodal_stresses`] finds it there.
+    /// Cauchy stress at nodes, from [`nodal_stresses`].
     pub nodal: Vec<Sym3>,
-    /// Von Mises stress at nodes, of the stress that [`nodal_stresses`] finds there.
+    /// Von Mises stress at nodes, from the nodal stress.
     pub node_von_mises: Vec<f64>,
 }
 
 impl Stresses {
-    /// From the stresses of elements and those at nodes.
     pub fn new(cell: Vec<Sym3>, nodal: Vec<Sym3>) -> Stresses {
         Stresses {
             cell_von_mises: cell.iter().map(von_mises).collect(),
@@ -55,22 +54,22 @@ impl Stresses {
     }
 }
 
-/// Stresses of a model at given displacements (m, one for each node).
+/// Stresses of a model at displacements in m, one per node.
 pub fn stresses(model: &SolidModel, displacement: &[Vec3]) -> Stresses {
     Stresses::new(element_stresses(model, displacement), nodal_stresses(model, displacement))
 }
 
-/// Stresses of a solid of rubber.
+/// Stresses of a rubber solid.
 ///
 /// # Errors
-/// An element turned inside out.
+/// An inverted element.
 pub fn rubber_stresses(model: &RubberModel, state: &RubberState) -> Result<Stresses, StepFailure> {
     let found = measures::stresses(model, state)?;
     Ok(Stresses::new(found.cells, found.nodes))
 }
 
-/// Writes a `.vtu` with displacements, velocities where there are any, stresses, and of a housing the
-/// force and pressure of the race on each node of its bore.
+/// Writes a `.vtu` file with displacement, velocity if present, stress, and for a housing the contact force and
+/// pressure of the race at each node of its bore.
 ///
 /// # Errors
 /// A value that is not finite, a file that cannot be written.
@@ -102,10 +101,10 @@ pub fn write_fields(
     Ok(write_atomic(path, &write_vtu(mesh, &points, &cells)?)?)
 }
 
-/// The bytes of a `.vtu` with the mesh and, for each of its sets, a field that is one at its nodes or in its elements and zero elsewhere.
+/// Content of a `.vtu` file with the mesh and, for each of its sets, a field that is one at its nodes or in its elements and zero elsewhere.
 ///
 /// # Errors
-/// A name of a set that the format has no place for.
+/// A set name that the format cannot hold.
 pub fn mesh_with_sets(mesh: &TetMesh) -> Result<Vec<u8>, MeshError> {
     let marked = |count: usize, members: &[u32]| {
         let mut values = vec![0.0; count];
@@ -131,7 +130,7 @@ pub fn mesh_with_sets(mesh: &TetMesh) -> Result<Vec<u8>, MeshError> {
     write_vtu(mesh, &points, &cells)
 }
 
-/// Writes the `.vtu` of a mode shape.
+/// Writes the `.vtu` file of a mode shape.
 ///
 /// # Errors
 /// As [`write_fields`].

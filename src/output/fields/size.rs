@@ -1,31 +1,30 @@
-//! How many files of fields a run writes, and how large they become, before anything is computed.
+//! Number and size of the field files of a run, estimated before the run.
 
 use crate::mesh::{Order, TetMesh};
 use crate::numeric::clock::to_digits;
 use std::fmt;
 
-/// Files and bytes of fields from which on a longer interval is asked for.
+/// Number of files and bytes above which a longer interval is recommended.
 const MANY: f64 = 1e4;
 const LARGE: f64 = 1e10;
 
-/// What fields a run writes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldsSize {
-    /// Time from one file to the next, s, as rows allow it; `None` for fields at the end alone.
+    /// Time between files, s, a multiple of the output interval; `None` if fields are written at the end only.
     pub interval: Option<f64>,
-    /// Whether less was asked for than the time between rows.
+    /// True if an interval shorter than the output interval was requested.
     pub shortened: bool,
-    /// Of all solids together.
+    /// Total number for all solids.
     pub files: f64,
-    /// About; 0 where the meshes are not known.
+    /// Estimated total size, bytes; 0 if the meshes are not known.
     pub bytes: f64,
 }
 
-/// Fields of a run to `end` with rows every `row`, s, of so many solids with files of so many bytes each. They are written with
-/// rows: every `wanted` s or the whole number of rows that comes nearest, and at the end.
+/// Field files of a run to `end` with rows every `row`, s; `solids` holds the bytes of one file of each solid. Fields are written
+/// with rows, every `wanted` s rounded to a whole number of rows, and at the end.
 pub fn fields_size(end: f64, row: f64, wanted: Option<f64>, solids: &[f64]) -> FieldsSize {
     let every = wanted.map(|wanted| (wanted / row).round().max(1.0));
-    // Rounding makes no row.
+    // The factor keeps rounding from removing the last row.
     let rows = (end / row * (1.0 + 1e-9)).floor();
     let times = every.map_or(1.0, |every| {
         let whole = (rows / every).floor();
@@ -40,7 +39,7 @@ pub fn fields_size(end: f64, row: f64, wanted: Option<f64>, solids: &[f64]) -> F
     }
 }
 
-/// Bytes of one file: displacement, velocity, stress and place of each node, the race's force and pressure where there is a bore;
+/// Bytes of one file: displacement, velocity, stress and position of each node, contact force and pressure if there is a bore;
 /// stress and nodes of each element.
 pub fn file_bytes(mesh: &TetMesh, has_bore: bool) -> f64 {
     let of_node = if has_bore { 14.0 } else { 10.0 };
@@ -65,11 +64,14 @@ impl fmt::Display for FieldsSize {
         if self.shortened {
             write!(
                 f,
-                "; numerics.fields_interval is shorter than the time between rows, so that fields come with each row"
+                "; numerics.fields_interval is shorter than the time between rows: fields are written with each row"
             )?;
         }
         if self.files > MANY || self.bytes > LARGE {
-            write!(f, "; WARNING: that is much, take a longer numerics.fields_interval")?;
+            write!(
+                f,
+                "; WARNING: this is a large amount, choose a longer numerics.fields_interval"
+            )?;
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Plots of a run.
+//! Plots of a run with bearings.
 
 use crate::numeric::clock::to_digits;
 use crate::output::plots::{
@@ -7,10 +7,10 @@ use crate::output::plots::{
 use crate::output::spectrum::{Spectrum, WINDOW};
 use crate::output::table::{Moving, RunTable};
 
-/// A plot a run can be asked for.
+/// Plots that a run can draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Picture {
-    /// Displacements of races and cage, loads of ball 1 and unaccounted energy over time.
+    /// Displacements of races and cage, loads of ball 1 and energy residual over time.
     Series,
     /// Races and cage in the Y–Z plane, over the window.
     Orbit,
@@ -20,23 +20,22 @@ pub enum Picture {
     SlipSpin,
     /// Normal load over ball azimuth, as in Fig. 3.31.
     Polar,
-    /// How far races, bodies and sections are off the axis over the speed that they turn at, as in Fig. 4.19.
+    /// Distance of races, bodies and sections from the axis over their speed, as in Fig. 4.19.
     RunUp,
 }
 
-/// Points that a curve is thinned to: two a pixel.
+/// Number of points of a thinned curve: two per pixel.
 pub(super) const POINTS: usize = 1500;
-/// Degrees of azimuth over which the loads of all balls are averaged for the polar plot.
+/// Sector of azimuth over which the loads of all balls are averaged for the polar plot, deg.
 const SECTOR: usize = 3;
-/// A speed that changes by less than this part of it is held.
+/// Relative change below which a speed is constant.
 const STEADY: f64 = 0.05;
-/// Changes of less than this part of the fastest speed are rounding.
+/// Change relative to the fastest speed below which it is rounding.
 const ROUNDING: f64 = 1e-9;
-/// Bins below this part of the highest are not drawn: rounding.
+/// Amplitude relative to the highest below which bins are rounding and not drawn.
 const SPECTRUM_FLOOR: f64 = 1e-9;
 
-/// File names and SVG of a picture; a part whose channels were not recorded, or that has no row
-/// yet, is left out.
+/// File names and SVG text of a plot. Parts whose channels were not recorded, or that have no row yet, are omitted.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -55,12 +54,12 @@ pub fn draw(
     }
 }
 
-/// What is left of a motion that has died out is drawn as nothing.
+/// Point of a curve; values below 1e-150, left by decayed vibrations, are drawn as zero.
 fn point(x: f64, y: f64) -> [f64; 2] {
     [x, y].map(|value| if value.abs() < 1e-150 { 0.0 } else { value })
 }
 
-/// `[time, scale · value]` of the channels that are recorded.
+/// Curves `[time, scale · value]` of the recorded channels.
 pub(super) fn over_time(table: &RunTable, channels: &[(&str, &str)], scale: f64) -> Vec<Curve> {
     let Some(times) = table.all("time").filter(|times| !times.is_empty()) else {
         return Vec::new();
@@ -90,8 +89,8 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
             ("ball_1_pocket_load", "ball 1 in its pocket"),
             ("cage_guide_load", "cage on its guide"),
         ];
-        let loads = loads.map(|(channel, said)| (format!("{prefix}{channel}"), said));
-        let loads = loads.each_ref().map(|(channel, said)| (channel.as_str(), *said));
+        let loads = loads.map(|(channel, name)| (format!("{prefix}{channel}"), name));
+        let loads = loads.each_ref().map(|(channel, name)| (channel.as_str(), *name));
         let curves = over_time(table, &loads, 1.0);
         let heading = format!("{title}: {}loads", prefix.replace('_', " "));
         let file = format!("series_{prefix}loads.svg");
@@ -106,7 +105,7 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     let residuals =
         [("energy_coupled_residual", "of all parts"), ("energy_residual", "of bearings")];
     let curves = over_time(table, &residuals, 1.0);
-    let heading = format!("{title}: energy unaccounted for");
+    let heading = format!("{title}: energy residual");
     add_series(&mut drawn, "series_energy.svg".into(), heading, "energy", "J", curves)?;
     let names = table.works();
     let works: Vec<(&str, &str)> =
@@ -149,14 +148,14 @@ fn orbits(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
         let svg = orbit(&OrbitPlot {
             title: format!("{title}: orbit of the {name}"),
             unit: "um".into(),
-            curves: vec![Curve::new(format!("{name}, marked where it ends"), points)],
+            curves: vec![Curve::new(format!("{name}, marker at the end"), points)],
         })?;
         drawn.push((format!("orbit_{}.svg", name.replace(' ', "_")), svg));
     }
     Ok(drawn)
 }
 
-/// Speed of each body in all rows, of those that change theirs by more than [`STEADY`], and by more than rounding of the
+/// Speeds, in all rows, of the bodies whose speed changes by more than [`STEADY`] and by more than rounding of the
 /// fastest.
 fn changing_speeds(table: &RunTable) -> Vec<(&Moving, Vec<f64>)> {
     let bodies = table.bodies.iter();
@@ -171,18 +170,18 @@ fn changing_speeds(table: &RunTable) -> Vec<(&Moving, Vec<f64>)> {
     all.into_iter().filter(|(_, speed)| changes(speed)).collect()
 }
 
-/// What a reader should know of run-ups that were asked for where there is none.
+/// Warning that run-up plots were requested but no speed changes.
 pub fn without_run_up(table: &RunTable) -> Option<String> {
     changing_speeds(table).is_empty().then(|| {
         format!(
-            "output.plots: nothing is drawn for `run-up`: no race, body or cage has changed its speed by more than {:.0} %; give \
+            "output.plots: `run-up` draws nothing, because no race, body or cage changes its speed by more than {:.0} %; give \
              a speed that rises, such as {{ ramp = [\"0 rpm\", \"3000 rpm\"], start = \"0 s\", duration = \"1 s\" }}",
             100.0 * STEADY
         )
     })
 }
 
-/// Of whatever changes its speed.
+/// Run-up plots of all bodies whose speed changes.
 fn run_ups(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let mut drawn = Vec::new();
     for (Moving { column, title: name, .. }, speed) in changing_speeds(table) {
@@ -231,7 +230,7 @@ fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
     Ok(drawn)
 }
 
-/// Amplitudes times `scale` over frequency, without what is rounding.
+/// Amplitudes times `scale` over frequency, without bins that are rounding.
 fn lines_of(name: &str, spectrum: &Spectrum, scale: f64) -> Option<Curve> {
     let highest = spectrum.amplitude.iter().copied().fold(0.0, f64::max);
     let bins = spectrum.amplitude.iter().enumerate().skip(1);
@@ -242,7 +241,7 @@ fn lines_of(name: &str, spectrum: &Spectrum, scale: f64) -> Option<Curve> {
     (!points.is_empty()).then(|| Curve::new(name, thin(points, 4 * POINTS)))
 }
 
-/// `title`, what is shown and the name in the file's; quantity and unit of the amplitudes.
+/// `title`, description and file name part of the spectrum; quantity and unit of the amplitudes.
 fn add_spectrum(
     drawn: &mut Vec<(String, String)>,
     (title, what, name): (&str, &str, &str),
@@ -264,13 +263,13 @@ fn add_spectrum(
     Ok(())
 }
 
-/// Azimuth in degrees from 0 to 360 of ball `ball` at every row of the window.
+/// Azimuth of ball `ball` at every row of the window, 0 to 360 deg.
 fn azimuths(table: &RunTable, prefix: &str, ball: usize) -> Option<Vec<f64>> {
     let angles = table.windowed(&format!("{prefix}ball_{ball}_angle"))?;
     Some(angles.into_iter().map(|angle| angle.rem_euclid(360.0)).collect())
 }
 
-/// Pictures of each bearing, their files and titles with its name where there are several.
+/// Plots of each bearing; with several bearings, file names and titles contain the bearing's name.
 fn each_bearing(
     title: &str,
     table: &RunTable,
@@ -289,7 +288,7 @@ fn each_bearing(
     Ok(drawn)
 }
 
-/// Ball 1 stands for all: each passes every azimuth. Its last turn is drawn, or what there is.
+/// Slip and spin of ball 1 over its last turn, or the part of it in the window. Every ball passes every azimuth.
 fn slip_spin(
     title: &str,
     table: &RunTable,
@@ -379,8 +378,8 @@ fn loads_over_azimuth(
     Ok(vec![("polar.svg".into(), svg)])
 }
 
-/// At most about `wanted` points: of each stretch the lowest and the highest, in their order, so
-/// that no peak is lost.
+/// Thins a curve to about `wanted` points: the lowest and the highest of each segment in their order, so that peaks are
+/// preserved.
 pub fn thin(points: Vec<[f64; 2]>, wanted: usize) -> Vec<[f64; 2]> {
     if points.len() <= wanted {
         return points;

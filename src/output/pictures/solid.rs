@@ -1,4 +1,4 @@
-//! Plots of a solid's run: energies and probes over time, spectra of the probes.
+//! Plots of the run of a solid: energies and probes over time, spectra of the probes.
 
 use super::bearing::{POINTS, add_series, over_time, thin};
 use crate::output::plots::{Axis, Curve, PlotError, Style, XyPlot, xy};
@@ -6,12 +6,12 @@ use crate::output::spectrum::{Spectrum, WINDOW, spectrum};
 use crate::output::table::RunTable;
 use crate::scene::build::solid::{NamedNodes, Support};
 
-/// Part of the highest peak of all that the peak of a component must reach to be drawn.
+/// Ratio to the highest peak of all components below which a component is not drawn.
 const LEAST: f64 = 1e-3;
-/// Part of a component's highest amplitude below which nothing is drawn.
+/// Ratio to a component's highest amplitude below which bins are not drawn.
 const FLOOR: f64 = 1e-6;
 
-/// Names and contents of the plots over time.
+/// File names and SVG text of the plots over time.
 ///
 /// # Errors
 /// A value too large to draw.
@@ -25,11 +25,11 @@ pub fn series_plots(
         ("energy_kinetic", "kinetic"),
         ("work_external", "work of loads and supports"),
         ("work_damping", "work of damping"),
-        ("energy_residual", "unaccounted for"),
-        ("energy_viscous", "held or lost in Maxwell elements"),
-        ("energy_maxwell", "held in their springs"),
-        ("energy_dissipated", "taken by their dashpots"),
-        ("energy_finite_strain", "taken by finite strain"),
+        ("energy_residual", "residual"),
+        ("energy_viscous", "stored or dissipated in Maxwell elements"),
+        ("energy_maxwell", "stored in Maxwell springs"),
+        ("energy_dissipated", "dissipated in Maxwell dashpots"),
+        ("energy_finite_strain", "finite-strain contribution"),
     ];
     let mut plots = Vec::new();
     let curves = over_time(table, &energies, 1.0);
@@ -45,8 +45,8 @@ pub fn series_plots(
     Ok(plots)
 }
 
-/// Names and contents of the plots of the supports' forces: over time, and of probes that a support of their
-/// name moves over their displacement.
+/// Plots of the support forces over time and, for probes with the name of a support, over the displacement that this
+/// support prescribes.
 ///
 /// # Errors
 /// A value too large to draw.
@@ -95,7 +95,7 @@ pub fn probe_spectra(table: &RunTable, probes: &[NamedNodes]) -> Vec<(String, Sp
         for axis in ["x", "y", "z"] {
             let column = format!("{}_{axis}", probe.name);
             let Some(values) = table.windowed(&column) else { continue };
-            // A component that never moves has none.
+            // A component that never moves has no spectrum.
             if values.iter().all(|value| *value == values[0]) {
                 continue;
             }
@@ -107,7 +107,7 @@ pub fn probe_spectra(table: &RunTable, probes: &[NamedNodes]) -> Vec<(String, Sp
     found
 }
 
-/// The plot of such spectra; nothing for none.
+/// Plot of the spectra of [`probe_spectra`]; `None` if there is nothing to draw.
 ///
 /// # Errors
 /// A value too large to draw.

@@ -1,4 +1,4 @@
-//! Drawing primitives that all plots share: text, lines, markers, legend.
+//! Drawing primitives of all plots: text, lines, markers, legend.
 
 use crate::mesh::write::is_xml_character;
 use crate::output::plots::{Curve, PlotError};
@@ -12,7 +12,7 @@ pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub const WIDTH: u32 = 900;
 pub const BLACK_TEXT: RGBColor = RGBColor(30, 30, 30);
 pub const GRID: RGBColor = RGBColor(222, 222, 222);
-/// Sizes at 900 px; at 700 px the smallest text is 13 px high.
+/// Text sizes at a width of 900 px; at 700 px the smallest text is 13 px high.
 const TITLE_SIZE: i32 = 25;
 pub const TEXT_SIZE: i32 = 21;
 
@@ -27,7 +27,7 @@ pub const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
 ];
 
-/// Of curve number `index`: the colours, then as many darker and as many paler ones.
+/// Colour of curve number `index`: the seven colours, then their darker and then their paler variants.
 pub fn colour(index: usize) -> RGBColor {
     let RGBColor(red, green, blue) = COLOURS[index % COLOURS.len()];
     let shade = |part: u8| match index / COLOURS.len() % 3 {
@@ -36,7 +36,6 @@ pub fn colour(index: usize) -> RGBColor {
         _ => 110 + (u32::from(part) * 120 / 255) as u8,
     };
     match (index / COLOURS.len() % 3, red) {
-        // Black has no darker one.
         (1, 0) if green == 0 && blue == 0 => RGBColor(120, 120, 120),
         _ => RGBColor(shade(red), shade(green), shade(blue)),
     }
@@ -66,7 +65,7 @@ pub enum Align {
     Left,
     Centre,
     Right,
-    /// Centred, read from below.
+    /// Centred, rotated to read upwards.
     Upwards,
 }
 
@@ -94,7 +93,6 @@ pub fn text(
     area.draw_text(&content, &style, at).map_err(failed)
 }
 
-/// The title above a plot, smaller if it is long.
 pub fn title(area: &Area, content: &str) -> Result<(), PlotError> {
     let fitting = (WIDTH as i32 - 40) * 19 / (10 * content.chars().count().max(1) as i32);
     let size = TITLE_SIZE.min(fitting).max(12);
@@ -126,7 +124,7 @@ pub fn disc(
     area.draw(&Circle::new(centre, radius, edge.stroke_width(2))).map_err(failed)
 }
 
-/// A line with a head at its end; the head is drawn only if the line is long enough to carry it.
+/// Arrow; lines shorter than 1 px are not drawn.
 pub fn arrow(area: &Area, from: Point, to: Point, colour: RGBColor) -> Result<(), PlotError> {
     let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
     let length = dx.hypot(dy);
@@ -144,7 +142,7 @@ pub fn arrow(area: &Area, from: Point, to: Point, colour: RGBColor) -> Result<()
     polygon(area, vec![to, at(head, 0.45 * head), at(head, -0.45 * head)], colour)
 }
 
-/// The marker of curve number `index`: shapes differ as well as colours.
+/// Marker of curve number `index`; shapes differ as well as colours.
 pub fn marker(area: &Area, index: usize, (x, y): Point) -> Result<(), PlotError> {
     let colour = colour(index);
     let r = 6;
@@ -167,7 +165,7 @@ pub fn marker(area: &Area, index: usize, (x, y): Point) -> Result<(), PlotError>
     }
 }
 
-/// Marks at most this many points of a curve, evenly along its index.
+/// Largest number of markers of a curve, spaced evenly by index.
 const MARKERS: usize = 24;
 
 pub fn markers(area: &Area, index: usize, points: &[Point]) -> Result<(), PlotError> {
@@ -175,7 +173,6 @@ pub fn markers(area: &Area, index: usize, points: &[Point]) -> Result<(), PlotEr
     points.iter().step_by(every).try_for_each(|&point| marker(area, index, point))
 }
 
-/// Entries of a legend set in rows below a plot.
 pub struct Legend {
     /// Curve number, column start and row of each entry.
     entries: Vec<(usize, i32, i32)>,
@@ -229,7 +226,7 @@ impl Legend {
     }
 }
 
-/// Width in px of a text of `TEXT_SIZE`, on the safe side for common fonts.
+/// Width of a text of size `TEXT_SIZE`, px, with a margin for common fonts.
 fn text_width(content: &str) -> i32 {
     content.chars().count() as i32 * 11
 }

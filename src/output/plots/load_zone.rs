@@ -1,4 +1,4 @@
-//! Which balls carry the load, in the manner of Fig. 4.8.
+//! Load zone: loads of the balls around the bearing, as in Fig. 4.8.
 
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::equilibrium::statics::BallState;
@@ -7,12 +7,12 @@ use crate::output::plots::canvas::{self, Align, Area, BLACK_TEXT, Point};
 use crate::output::plots::ticks::nice_step;
 use plotters::style::RGBColor;
 
-/// Cross-section of the bearing in its Y–Z plane. Balls are drawn at their azimuth on the pitch
-/// circle: displacements are far too small to be seen.
+/// Cross-section of the bearing in its Y–Z plane. Balls are drawn at their azimuth on the pitch circle, because
+/// displacements are too small to be visible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadZone {
     pub title: String,
-    /// Groove bottoms, pitch circle and ball, m.
+    /// Radii of groove bottoms, pitch circle and ball, m.
     pub inner_raceway_radius: f64,
     pub outer_raceway_radius: f64,
     pub pitch_radius: f64,
@@ -22,11 +22,11 @@ pub struct LoadZone {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadZoneBall {
-    /// From +Y towards +Z, rad.
+    /// Azimuth from +Y towards +Z, rad.
     pub azimuth: f64,
-    /// In contact with the inner race.
+    /// True if the ball is in contact with the inner race.
     pub loaded: bool,
-    /// Normal load on the outer race, N; the arrow.
+    /// Normal load on the outer race, N, drawn as an arrow.
     pub outer_load: f64,
 }
 
@@ -50,7 +50,7 @@ impl LoadZone {
 
 const CENTRE: Point = (450, 400);
 const HEIGHT: u32 = 850;
-/// px of the outer race's outer edge, and of the longest arrow beyond the outer raceway.
+/// Radius of the outer race's outer edge, and length of the longest arrow beyond the outer raceway, px.
 const EDGE: f64 = 215.0;
 const LONGEST: f64 = 125.0;
 
@@ -134,12 +134,12 @@ fn check(zone: &LoadZone) -> Result<(), PlotError> {
     Ok(())
 }
 
-/// Arrows start at the outer raceway, where the load acts; their values stand at the tips.
+/// Load arrows, which start at the outer raceway, with the values at their tips.
 fn arrows(area: &Area, zone: &LoadZone, largest: f64, raceway: f64) -> Result<(), PlotError> {
     for ball in zone.balls.iter().filter(|ball| ball.outer_load > 0.0) {
         let tip = raceway + LONGEST * ball.outer_load / largest;
         canvas::arrow(area, place(ball.azimuth, raceway), place(ball.azimuth, tip), ARROW)?;
-        // More labels than this would overlap; the results table has them all.
+        // More labels would overlap; the results table has all values.
         if zone.balls.len() <= 24 {
             let at = place(ball.azimuth, tip.max(EDGE) + 20.0);
             let align = match at.0 - CENTRE.0 {
@@ -190,7 +190,6 @@ fn place(azimuth: f64, radius: f64) -> Point {
     (x.round() as i32, y.round() as i32)
 }
 
-/// About three digits.
 fn short(value: f64) -> String {
     match value {
         v if !(1e-3..1e6).contains(&v) => format!("{v:.2e}"),

@@ -1,13 +1,13 @@
-//! SVG pictures from plain data; every function returns the SVG as text.
+//! SVG plots from plain data; every function returns the SVG text.
 //!
-//! - [`campbell()`]: frequencies of a rotor over its speed
+//! - [`campbell()`]: whirl frequencies of a rotor over its speed
 //! - [`load_zone()`]: balls between the races with an arrow for each load, as in Fig. 4.8
 //! - [`orbit()`]: paths in the Y–Z plane, both axes to the same scale
 //! - [`polar()`]: values over azimuth
 //! - [`xy()`]: curves over linear or logarithmic axes
 //!
-//! Drawn for a width of 700 px and more, in the colours of Okabe and Ito that colour-blind readers
-//! can tell apart, with another marker for every curve.
+//! Designed for a width of at least 700 px, with the colour-blind safe colours of Okabe and Ito and a different marker for
+//! every curve.
 pub mod campbell;
 mod canvas;
 pub mod load_zone;
@@ -25,14 +25,12 @@ pub use xy::{Axis, Style, XyPlot, xy};
 
 use thiserror::Error;
 
-/// A named sequence of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// As in the legend.
     pub name: String,
     /// `[x, y]` in the units of the axes; for a polar plot azimuth in rad and value.
     pub points: Vec<[f64; 2]>,
-    /// Single values that no line may join, whatever the style of the plot.
+    /// True if the points are never joined by lines, whatever the style of the plot.
     pub separate: bool,
 }
 
@@ -41,7 +39,7 @@ impl Curve {
         Curve { name: name.into(), points, separate: false }
     }
 
-    /// Single values, such as printed ones: every one marked, none joined.
+    /// Separate values, such as published ones: every point has a marker, none are joined.
     pub fn separate(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
         Curve { separate: true, ..Curve::new(name, points) }
     }
@@ -54,15 +52,15 @@ pub enum PlotError {
     #[error("curve {curve:?} has no point")]
     NoPoint { curve: String },
     #[error(
-        "point {point} of curve {curve:?} is ({x:?}, {y:?}); numbers are drawn if they are 0 or \
-         between 1e-200 and 1e200 in size"
+        "point {point} of curve {curve:?} is ({x:?}, {y:?}); allowed are 0 and magnitudes \
+         from 1e-200 to 1e200"
     )]
     NotDrawable { curve: String, point: usize, x: f64, y: f64 },
     #[error("point {point} of curve {curve:?} is {value} on a logarithmic axis; allowed is > 0")]
     NotPositive { curve: String, point: usize, value: f64 },
     #[error("point {point} of curve {curve:?} has the value {value}; a polar plot needs >= 0")]
     Negative { curve: String, point: usize, value: f64 },
-    #[error("{what} is {value}; allowed is > 0 and no more than the outer raceway radius")]
+    #[error("{what} is {value}; allowed is > 0 and at most the outer raceway radius")]
     Size { what: &'static str, value: f64 },
     #[error("ball {ball} has {what} = {value}; allowed is a finite number >= 0")]
     Ball { ball: usize, what: &'static str, value: f64 },

@@ -1,4 +1,4 @@
-//! Paths seen against the axial direction: +Y to the right, +Z up, both to the same scale.
+//! Orbit plot: paths seen along the axis, +Y to the right, +Z up, both to the same scale.
 
 use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point};
 use crate::output::plots::{Curve, PlotError, check_curves, ticks};
@@ -6,18 +6,18 @@ use crate::output::plots::{Curve, PlotError, check_curves, ticks};
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrbitPlot {
     pub title: String,
-    /// Of both axes, drawn as `Y [unit]` and `Z [unit]`.
+    /// Unit of both axes, drawn as `Y [unit]` and `Z [unit]`.
     pub unit: String,
-    /// `[y, z]`; the last point carries a marker.
+    /// Points `[y, z]`; the last point has a marker.
     pub curves: Vec<Curve>,
 }
 
 const LEFT: i32 = 170;
 const TOP: i32 = 60;
-/// px, of the square.
+/// Side of the square, px.
 const SIDE: i32 = 600;
 
-/// Draws the paths; the legend stands below them.
+/// Draws the paths, with the legend below.
 ///
 /// # Errors
 /// No curve, a curve without points, a value that is not finite.
@@ -33,7 +33,7 @@ pub fn orbit(plot: &OrbitPlot) -> Result<String, PlotError> {
         let middle = 0.5 * (low + high);
         ticks::linear([middle - half, middle + half].into_iter(), 6)
     });
-    // The ends of an axis lie on marks, so that its length is not quite what was asked for.
+    // The ends of an axis are on tick marks, so that its length differs slightly from the requested one.
     let length = scales.iter().map(|scale| scale.high - scale.low).fold(0.0, f64::max);
     let px = |scale: &ticks::Scale, position: f64| {
         let part = (scale.high - scale.low) / length;

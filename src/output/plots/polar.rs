@@ -1,4 +1,4 @@
-//! Values over azimuth, seen against the axial direction: +Y to the right, +Z up.
+//! Polar plot: values over azimuth, seen along the axis, +Y to the right, +Z up.
 
 use crate::equilibrium::statics::{BallState, StaticSolution};
 use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point};
@@ -11,7 +11,7 @@ pub struct PolarPlot {
     /// Quantity and unit along the radius, drawn as `quantity [unit]`.
     pub quantity: String,
     pub unit: String,
-    /// Azimuth from +Y towards +Z in rad, value >= 0. Joined in order of azimuth and closed.
+    /// Azimuth from +Y towards +Z in rad, value >= 0. Points are joined in order of azimuth; the curve is closed.
     pub curves: Vec<Curve>,
 }
 
@@ -37,7 +37,7 @@ impl PolarPlot {
 const CENTRE: Point = (450, 375);
 const RADIUS: f64 = 265.0;
 
-/// Draws the curves around a circle; the legend stands below it.
+/// Draws the curves around a circle, with the legend below.
 ///
 /// # Errors
 /// No curve, a curve without points, a value that is negative or not finite.
@@ -79,7 +79,7 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
                 ..=-12 => Align::Right,
                 _ => Align::Centre,
             };
-            // Text beside the circle needs less distance from it than text above or below.
+            // Text at the sides of the circle needs less distance than text above or below.
             let x = x + (dx - CENTRE.0) * 2 / 5;
             canvas::text(area, &label, (x, y + dy - CENTRE.1), size, align, BLACK_TEXT)?;
         }
@@ -99,12 +99,12 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
             }
             let closed = points.iter().copied().chain([points[0]]).collect();
             canvas::line(area, closed, canvas::colour(index), 3)?;
-            // Markers on a dense curve would be taken for balls.
+            // On a dense curve markers could be mistaken for balls.
             if points.len() <= 40 {
                 canvas::markers(area, index, &points)?;
             }
         }
-        // Ring labels over the curves, between two spokes, so that they stay readable.
+        // Ring labels are drawn over the curves, between two spokes, to stay readable.
         for (position, label) in scale.ticks.iter().skip(1) {
             let at = place(15f64.to_radians(), *position - 24.0 / RADIUS);
             canvas::text(area, label, at, size, Align::Centre, BLACK_TEXT)?;

@@ -1,6 +1,5 @@
-//! Where an axis is marked, and with what.
+//! Tick marks of axes and their labels.
 
-/// An axis from `low` to `high` with marks between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub low: f64,
@@ -20,10 +19,10 @@ impl Scale {
     }
 }
 
-/// Magnitudes that an axis can have; beyond them the arithmetic of its marks could overflow.
+/// Magnitudes that an axis can have; beyond them the computation of tick marks could overflow.
 pub const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-200..=1e200;
 
-/// A linear axis around values within [`MAGNITUDES`] or zero; its ends are on a mark.
+/// Linear axis around values within [`MAGNITUDES`] or zero; its ends are on tick marks.
 pub fn linear(values: impl Iterator<Item = f64>, wanted: usize) -> Scale {
     let (mut low, mut high) = range(values);
     // Values that agree to rounding are drawn as one, in the middle of the axis.
@@ -42,8 +41,8 @@ pub fn linear(values: impl Iterator<Item = f64>, wanted: usize) -> Scale {
     Scale { low: first * step, high: last * step, ticks, log: false }
 }
 
-/// A logarithmic axis around positive values within [`MAGNITUDES`]: marks at powers of ten, also
-/// at 2 and 5 times them if those are few.
+/// Logarithmic axis around positive values within [`MAGNITUDES`]: tick marks at powers of ten, and
+/// at 2 and 5 times them if there are few.
 pub fn logarithmic(values: impl Iterator<Item = f64>) -> Scale {
     let (low, high) = range(values);
     let (first, last) = (low.log10() + 1e-9, high.log10() - 1e-9);
@@ -52,7 +51,7 @@ pub fn logarithmic(values: impl Iterator<Item = f64>) -> Scale {
         decades = (decades.0 - 1, decades.0 + 1);
     }
     let count = decades.1 - decades.0;
-    // At most nine labels; the last mark always carries one.
+    // At most nine labels; the last mark always has one.
     let every = (count + 8) / 9;
     let factors: &[f64] = if count <= 2 { &[1.0, 2.0, 5.0] } else { &[1.0] };
     let power = |exponent: i32| 10f64.powi(exponent);
@@ -88,7 +87,7 @@ fn label(value: f64, step: f64, largest: f64) -> String {
     if value.abs() < 0.5 * step {
         return "0".to_string();
     }
-    // As many digits as tell the marks apart.
+    // Enough digits to distinguish the marks.
     let exponent = |x: f64| (x.log10() + 1e-9).floor();
     let digits = (exponent(value.abs()) - exponent(step)).clamp(0.0, 16.0) as usize;
     format!("{value:.digits$e}")

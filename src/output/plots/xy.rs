@@ -4,7 +4,7 @@ use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point}
 use crate::output::plots::ticks::{self, Scale};
 use crate::output::plots::{Curve, PlotError, check_curves};
 
-/// What an axis shows; drawn as `label [unit]`, `unit` `1` for a dimensionless quantity.
+/// Axis, drawn as `label [unit]`; `unit` is `1` for a dimensionless quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     pub label: String,
@@ -25,14 +25,13 @@ impl Axis {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     Lines,
-    /// Curves of many points carry a marker on some of them.
+    /// Curves of many points have markers at some of them.
     LinesAndMarkers,
-    /// Every point, not joined.
+    /// Markers at all points, without lines.
     Markers,
 }
 
 impl Style {
-    /// How a curve is drawn in a plot of this style.
     fn of(self, curve: &Curve) -> Style {
         if curve.separate { Style::Markers } else { self }
     }
@@ -52,7 +51,7 @@ const RIGHT: i32 = 870;
 const TOP: i32 = 60;
 const BOTTOM: i32 = 500;
 
-/// Draws the curves; the legend stands below the axes.
+/// Draws the curves, with the legend below the axes.
 ///
 /// # Errors
 /// No curve, a curve without points, a value that is not finite, or not positive on a logarithmic

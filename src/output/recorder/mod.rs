@@ -1,7 +1,7 @@
-//! The time series of a run: the columns of what moves in it, side by side, and one row of them at a time.
+//! Time series of a run: columns of all its parts, and the rows recorded so far.
 
 mod bearing;
-mod course;
+mod quasi_static;
 mod rubber;
 pub mod seat;
 mod shaft;
@@ -18,19 +18,19 @@ use crate::scene::build::solid::{NamedNodes, Support};
 use bearing::BearingColumns;
 use ndarray::Array2;
 
-/// Rows of the time series, in memory; room for all of them is made at the start.
+/// Rows of the time series, in memory; the memory for all rows is allocated at the start.
 pub struct Recorder {
     columns: Vec<Column>,
     values: Vec<f64>,
     bearing: Option<BearingColumns>,
-    /// How often each group of channels was recorded.
+    /// Number of times each group of channels was recorded.
     pub ran: Counts,
     pub probes: Vec<NamedNodes>,
     pub supports: Vec<Support>,
 }
 
 impl Recorder {
-    /// The columns of a run, without room for rows.
+    /// Columns of a run, without memory for rows.
     pub fn new(parts: &Parts, asked: &[ChannelGroup]) -> Recorder {
         let mut columns = vec![Column::new("time", "s")];
         let mut of_bearing =
@@ -50,7 +50,7 @@ impl Recorder {
             }
             Parts::QuasiStaticSequence(parts) => {
                 let with_loads = asked.contains(&ChannelGroup::Loads);
-                columns.extend(course::columns(&parts.problem, with_loads));
+                columns.extend(quasi_static::columns(&parts.problem, with_loads));
             }
             Parts::Rubber(parts) => {
                 probes.clone_from(&parts.setup.probes);
@@ -62,7 +62,7 @@ impl Recorder {
         Recorder { columns, values: Vec::new(), bearing, ran, probes, supports }
     }
 
-    /// With room for so many rows.
+    /// Allocates memory for `rows` rows.
     ///
     /// # Errors
     /// [`SessionError::Memory`].
@@ -79,17 +79,14 @@ impl Recorder {
         &self.columns
     }
 
-    /// Rows recorded so far.
     pub fn rows(&self) -> usize {
         self.values.len() / self.columns.len()
     }
 
-    /// Rows that have room.
     pub fn capacity(&self) -> usize {
         self.values.capacity() / self.columns.len()
     }
 
-    /// A row of the table, in the order of the columns.
     pub fn row(&self, row: usize) -> &[f64] {
         let width = self.columns.len();
         &self.values[row * width..(row + 1) * width]
@@ -107,9 +104,9 @@ impl Recorder {
         Series::new(self.columns.clone(), data)
     }
 
-    /// Takes over the first `rows` rows of a table that an earlier part of the run left.
+    /// Restores the first `rows` rows from a table of an earlier part of the run.
     ///
-    /// Returns whether the table has these columns and as many rows.
+    /// Returns false if the table has other columns or fewer rows.
     pub fn restore(&mut self, series: &Series, rows: usize) -> bool {
         if series.columns() != self.columns || series.data().nrows() < rows {
             return false;

@@ -1,4 +1,4 @@
-//! Columns of a solid of rubber: what it holds and has lost, largest values, probes and reactions.
+//! Columns of a rubber solid: energies, largest values, probes and reactions.
 
 use super::{Recorder, length, mean, probe_columns};
 use crate::kinematics::strain::von_mises;
@@ -10,8 +10,8 @@ use crate::solids::rubber::measures::{RubberLedger, point_stresses};
 use crate::solids::rubber::steps::RubberSolid;
 
 pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
-    // The third is held in the Maxwell elements or lost in them; of that, by the law of small strain, the two behind it, what
-    // finite strain adds, and what all leave.
+    // `energy_viscous` is the energy stored or dissipated in the Maxwell elements. The next three columns are its parts: stored
+    // and dissipated by the law of small strain, and the contribution of finite strain. The last column is the residual.
     let names = [
         "energy_strain",
         "work_external",
@@ -29,10 +29,10 @@ pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column
 }
 
 impl Recorder {
-    /// Adds a row of a solid of rubber.
+    /// Adds a row of a rubber solid.
     ///
     /// # Errors
-    /// A state that cannot be.
+    /// An invalid state.
     pub(in crate::output) fn record_rubber(
         &mut self,
         solid: &RubberSolid,

@@ -1,4 +1,4 @@
-//! Columns of a seat in a housing, the same whichever way it is solved, and of housings in explicit steps.
+//! Columns of housing fits, the same for every housing method, and of housings in explicit steps.
 
 use super::{Recorder, bearing::connection_columns, shaft, solid::check_finite};
 use crate::ch2_housing::bore_contact::ContactSum;
@@ -16,16 +16,16 @@ use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::SolidError;
 use crate::solids::stress::first_inverted;
 
-/// The seat at one time.
+/// Contact of a race with its bore at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeatRow {
-    /// Of the bore on the outer race, N, and about its centre, N·m.
+    /// Force of the bore on the outer race, N, and moment about its centre, N·m.
     pub force: Vec3,
     pub moment: Vec3,
     pub touching: usize,
-    /// m.
+    /// Deepest penetration, m.
     pub deepest: f64,
-    /// Pa.
+    /// Largest contact pressure, Pa.
     pub peak_pressure: f64,
 }
 
@@ -51,7 +51,7 @@ impl SeatRow {
         }
     }
 
-    /// In the order of [`seat_columns`].
+    /// Values in the order of [`seat_columns`].
     pub fn values(&self) -> [f64; 9] {
         let ([x, y, z], [a, b, c]) = (self.force, self.moment);
         let touching = self.touching as f64;
@@ -59,7 +59,7 @@ impl SeatRow {
     }
 }
 
-/// Of one seat; what it is called by stands before each name.
+/// Columns of one fit; `prefix` starts each name.
 pub fn seat_columns(prefix: &str) -> Vec<Column> {
     let axes = ["x", "y", "z"];
     let mut columns: Vec<Column> = Vec::new();
@@ -72,7 +72,7 @@ pub fn seat_columns(prefix: &str) -> Vec<Column> {
     columns
 }
 
-/// Of the friction of one seat, whose force and moment are part of the housing's.
+/// Columns of the friction of one fit. Its force and moment are included in those of the housing.
 fn friction_columns(prefix: &str) -> Vec<Column> {
     let mut columns = Vec::new();
     for (what, unit) in [("force", "N"), ("moment", "N m")] {
@@ -86,19 +86,19 @@ fn friction_columns(prefix: &str) -> Vec<Column> {
     columns
 }
 
-/// In the order of [`friction_columns`].
+/// Values in the order of [`friction_columns`].
 fn friction_values(sum: &FrictionSum) -> [f64; 10] {
     let ([x, y, z], [a, b, c]) = (sum.force, sum.moment);
     [x, y, z, a, b, c, sum.slipping as f64, sum.stored, sum.heat, sum.load_work]
 }
 
-/// "left_", before the names of columns; nothing for the only one.
+/// Column prefix such as `left_`; empty for an unnamed part.
 pub fn prefix(name: &Option<String>) -> String {
     name.as_ref().map_or(String::new(), |name| format!("{name}_"))
 }
 
-/// Beside the bearings' own. Seats come with their solids, as they do in the exchange; bushings have the columns of
-/// springs, and their energies.
+/// Columns in addition to those of bearings. Fits are grouped by solid, as in the exchange; bushings have the columns of
+/// springs and their energies.
 pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     let HousedParts { solids, seats, bushings, .. } = parts;
     let housings = solids.iter().filter(|solid| solid.shaft.is_none());
@@ -119,7 +119,7 @@ pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     energies(&of_seats, &["work_fit"]);
     for BondedPart { name, .. } in bushings {
         columns.extend(connection_columns(name));
-        let energies = OF_BUSHING.map(|of| Column::new(format!("{name}_{of}"), "J"));
+        let energies = BUSHING_ENERGIES.map(|of| Column::new(format!("{name}_{of}"), "J"));
         columns.extend(energies);
     }
     columns.extend(solids.iter().flat_map(shaft::columns));
@@ -133,9 +133,9 @@ pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     columns
 }
 
-/// What a bushing in elements holds and has lost; of the Maxwell elements by the law of small strain, and what finite
-/// strain adds.
-const OF_BUSHING: [&str; 6] = [
+/// Energies and works of a bushing in elements. Those of the Maxwell elements follow the law of small strain;
+/// `energy_finite_strain` is the contribution of finite strain.
+const BUSHING_ENERGIES: [&str; 6] = [
     "energy_strain",
     "energy_maxwell",
     "energy_kinetic",
@@ -148,7 +148,7 @@ impl Recorder {
     /// Adds a row of bearings and housings in explicit steps.
     ///
     /// # Errors
-    /// A value that is not finite, an inverted element, a ledger that does not close.
+    /// A value that is not finite, an inverted element, an energy balance that does not close.
     pub(in crate::output) fn record_housed(
         &mut self,
         housed: &mut Exchange,
@@ -184,7 +184,7 @@ impl Recorder {
             let Wrench { force, moment } = of.loads[bushing.second];
             values.extend(force.into_iter().chain(moment));
             values.extend([of.network, of.springs, of.kinetic]);
-            // Up to where the rubber has the bodies, so that the columns sum up to the residual.
+            // Work up to the time of the rubber, so that the columns sum up to the residual.
             values.extend([of.dissipated, of.beyond, of.work + of.to_come]);
         }
         parts().for_each(|(part, now)| self.record_shaft(part, now));

@@ -1,4 +1,4 @@
-//! Columns of a shaft in elements: its watched sections, its energies, and those of what joins races to it.
+//! Columns of a shaft in elements: its watched sections, its energies, and those of its joints with races.
 
 use super::Recorder;
 use crate::motion::coupling::SolidPart;
@@ -6,7 +6,7 @@ use crate::motion::explicit_shaft::JointSnapshot;
 use crate::motion::explicit_solid::{SolidSnapshot, SteppedSolid};
 use crate::output::series::Column;
 
-/// J.
+/// Energy columns, J.
 const ENERGIES: [&str; 8] = [
     "energy_strain",
     "energy_kinetic",
@@ -18,7 +18,7 @@ const ENERGIES: [&str; 8] = [
     "work_on_races",
 ];
 
-/// Of a solid that is a shaft; of others none.
+/// Columns of a shaft in elements; empty for other solids.
 pub(super) fn columns(part: &SolidPart) -> Vec<Column> {
     let Some(shaft) = &part.shaft else { return Vec::new() };
     let name = part.name.as_deref().unwrap_or("shaft");
@@ -31,7 +31,7 @@ pub(super) fn columns(part: &SolidPart) -> Vec<Column> {
 }
 
 impl Recorder {
-    /// In the order of [`columns`].
+    /// Adds the values in the order of [`columns`].
     pub(super) fn record_shaft(&mut self, part: &SteppedSolid, now: &SolidSnapshot) {
         let Some(shaft) = &part.shaft else { return };
         let centres = shaft.watched_centres(&part.solid);
@@ -46,7 +46,7 @@ impl Recorder {
             now.unbalance_work,
             of_joints(|joint| joint.stored),
             of_joints(|joint| joint.heat),
-            // Up to where the elements are, so that the columns sum up to the residual.
+            // Work up to the time of the elements, so that the columns sum up to the residual.
             of_joints(|joint| joint.work + joint.to_come),
         ]);
     }

@@ -1,4 +1,4 @@
-//! Columns of a solid by itself: its ledger, largest values, probes and reactions.
+//! Columns of a single solid: its energy balance, largest values, probes and reactions.
 
 use super::Recorder;
 use crate::kinematics::vec3::Vec3;
@@ -20,7 +20,6 @@ pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column
     columns
 }
 
-/// Columns of the probes and supports.
 pub fn probe_columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     let mut columns = Vec::new();
     for probe in probes {
@@ -36,10 +35,10 @@ pub fn probe_columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column>
 }
 
 impl Recorder {
-    /// Adds a row of a solid by itself.
+    /// Adds a row of a single solid.
     ///
     /// # Errors
-    /// A value that is not finite, an inverted element, a ledger that does not close.
+    /// A value that is not finite, an inverted element, an energy balance that does not close.
     pub(in crate::output) fn record_solid(
         &mut self,
         solid: &mut ExplicitSolid,
@@ -89,30 +88,26 @@ pub(super) fn check_finite(
     }
 }
 
-/// Forces of the supports on the nodes at the time of the last ledger, N; zero on free
-/// components.
+/// Support forces on the nodes at the time of the last energy balance, N; zero on free components.
 fn reactions(solid: &ExplicitSolid) -> Vec<Vec3> {
     let (model, forces) = (&solid.model, solid.forces());
     let mut reactions = vec![[0.0; 3]; forces.len()];
-    for held in &model.problem.prescribed {
-        let (node, axis) = (held.node as usize, held.axis);
-        let inertia = model.mass[node] * held.profile.acceleration(solid.time);
+    for prescribed in &model.problem.prescribed {
+        let (node, axis) = (prescribed.node as usize, prescribed.axis);
+        let inertia = model.mass[node] * prescribed.profile.acceleration(solid.time);
         reactions[node][axis] = inertia - forces[node][axis];
     }
     reactions
 }
 
-/// Length of a vector.
 pub fn length(v: &Vec3) -> f64 {
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
-/// Mean of vectors over nodes.
 pub fn mean(of: &[Vec3], nodes: &[u32]) -> Vec3 {
     sum(of, nodes).map(|total| total / nodes.len() as f64)
 }
 
-/// Sum of vectors over nodes.
 pub fn sum(of: &[Vec3], nodes: &[u32]) -> Vec3 {
     let mut total = [0.0; 3];
     for node in nodes {

@@ -1,5 +1,5 @@
-//! A run from start to end: what moves, by its clock; rows of the time series, the energy ledger, and
-//! the last state that was sound.
+//! Execution of a run: time stepping by a clock, rows of the time series, energy balance, and the last valid state for a
+//! restart.
 
 pub mod motion;
 pub mod rubber;
@@ -34,14 +34,14 @@ pub enum SessionError {
     #[error("the output interval is {0} s; it must be positive and finite")]
     Interval(f64),
     #[error(
-        "{size}, more than {most} GB: take a longer numerics.output_interval ({interval:.1e} s would do), a shorter \
+        "{size}, more than {most} GB: use a longer numerics.output_interval ({interval:.1e} s is enough), a shorter \
          numerics.end, or fewer output.channels",
         most = 8e-9 * size::MOST_VALUES,
         interval = size.shortest
     )]
     TooLarge { size: TableSize },
     #[error(
-        "two columns would be called {0:?}: name the bodies, bearings, springs or places otherwise of which they are"
+        "two columns would have the name {0:?}: rename the bodies, bearings, springs or positions concerned"
     )]
     SharedColumn(String),
     #[error(transparent)]
@@ -58,31 +58,31 @@ pub enum SessionError {
     Rubber(#[from] RubberError),
     #[error(
         "{residual:.3e} J are unaccounted for at t = {} s, step {step}, more than {limit} of \
-         the {turned_over:.3e} J turned over; take a smaller step",
+         the {turned_over:.3e} J exchanged; take a smaller step",
         rounded(*time)
     )]
     Energy { residual: f64, turned_over: f64, limit: f64, time: f64, step: u64 },
     #[error(
-        "{residual:.3e} J of bearing and housing or bushings are unaccounted for at t = {at} s, window {window}, \
-         more than {limit} of the {turned_over:.3e} J turned over; take shorter steps \
+        "{residual:.3e} J of bearing and housing or bushings are unaccounted for at t = {at} s, coupling step {window}, \
+         more than {limit} of the {turned_over:.3e} J exchanged; take shorter steps \
          (step_fraction and window_phase of [housing] or of the bushing, numerics.step)", at = rounded(*time)
     )]
     EnergyOfBoth { residual: f64, turned_over: f64, limit: f64, time: f64, window: u64 },
     #[error(
-        "{rows} rows of {columns} channels do not fit in memory; take a longer output interval or \
+        "{rows} rows of {columns} channels do not fit in memory; use a longer output interval or \
          fewer channels"
     )]
     Memory { rows: usize, columns: usize },
-    #[error("the state is that of a run of another kind")]
+    #[error("the state belongs to another kind of run")]
     OtherKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     Running,
-    /// File of fields number so and so is due at the present state.
+    /// Field file with this number is due at the present state.
     Fields(u64),
-    /// At the end, with the last row recorded.
+    /// The end is reached and the last row is recorded.
     Complete,
 }
 
@@ -91,34 +91,32 @@ pub struct Session<'p> {
     pub clock: Clock,
     pub recorder: Recorder,
     pub watch: LedgerWatch,
-    /// Part of the energy turned over that may go missing where a solid moves.
+    /// Largest energy residual of a run with a solid, as a fraction of the energy exchanged.
     pub energy_limit: f64,
     pub status: Status,
-    /// How often each stage ran before the session began.
+    /// Number of executions of each stage before this session.
     before: StageCounts,
-    /// Counts of the motion and of the recorder as of `sound`.
+    /// Execution counts of the motion and of the recorder at the time of `sound`.
     kept_ran: (StageCounts, Counts),
     sound: Sound,
     failed: bool,
 }
 
-/// What a later run goes on from.
+/// State from which a later run resumes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sound {
     pub checkpoint: Checkpoint,
     pub watch: LedgerWatch,
-    /// Rows that belong to it.
     pub rows: usize,
-    /// How often each stage of the run had run.
+    /// Number of executions of each stage up to this state.
     pub ran: StageCounts,
 }
 
 impl<'p> Session<'p> {
-    /// Starts a run and records its first row; that of equilibria is still to be found.
+    /// Starts a run and records its first row; the first row of a quasi-static sequence is computed later.
     ///
     /// # Errors
-    /// No equilibrium to start from, no step or one that is too long, no time to simulate, more rows
-    /// than fit in memory.
+    /// No initial equilibrium, no valid time step, a zero duration, more rows than fit in memory.
     pub fn start(
         parts: impl Into<Parts<'p>>,
         request: &RunRequest,
@@ -130,7 +128,7 @@ impl<'p> Session<'p> {
         let (motion, clock) = Motion::start(parts, request)?;
         let recorder = columns.with_room(clock.rows_in_all())?;
         let sound = Sound {
-            checkpoint: motion.room(),
+            checkpoint: motion.empty_checkpoint(),
             watch: LedgerWatch::default(),
             rows: 0,
             ran: StageCounts::default(),
@@ -146,14 +144,14 @@ impl<'p> Session<'p> {
         Ok(session)
     }
 
-    /// Goes on from a sound state, whose rows are in `series`, by the `clock` of the kept run; `None` if
-    /// these are not the rows of this run.
+    /// Resumes from a valid state, whose rows are in `series`, with the `clock` of the stored run; `None` if
+    /// the rows do not belong to this run.
     ///
     /// # Errors
     /// As [`Session::start`].
     ///
     /// # Panics
-    /// If the checkpoint has other numbers of balls or nodes.
+    /// If the checkpoint has another number of balls or nodes.
     pub fn resume(
         parts: impl Into<Parts<'p>>,
         request: &RunRequest,
@@ -206,24 +204,23 @@ impl<'p> Session<'p> {
         }
     }
 
-    /// At most `steps` steps, windows or equilibria, fewer where fields are due or the end comes.
+    /// Advances by at most `steps` steps, coupling steps or equilibria; stops early when fields are due or at the end.
     ///
     /// # Errors
-    /// What ends the motion, or an energy ledger that does not close; [`Session::resumable`] then is
-    /// the last sound state.
+    /// A failed step, or an energy balance that does not close; [`Session::resumable`] then returns the last valid state.
     pub fn advance(&mut self, steps: u64) -> Result<Status, SessionError> {
         let target = self.motion.done() + steps;
         while self.status != Status::Complete && self.motion.done() < target {
             let rows = self.clock.rows;
-            let moved = self.go_to_next_stop(target - self.motion.done());
+            let moved = self.advance_to_next_event(target - self.motion.done());
             if moved.is_err() {
                 self.failed = true;
-                // What the failed step left of a solid is of no use to anybody.
+                // Discard the invalid state that a failed step leaves in a solid.
                 match (&mut self.motion, &self.sound.checkpoint) {
                     (Motion::Solid(moving), Checkpoint::Solid(kept, _)) => {
                         moving.solid.restore(kept);
                     }
-                    // One that stood before stands again.
+                    // This restore succeeded before with the same state.
                     (Motion::Rubber(moving), Checkpoint::Rubber(kept, rows)) => {
                         let _ = moving.restore(kept, *rows);
                     }
@@ -242,10 +239,10 @@ impl<'p> Session<'p> {
         Ok(self.status)
     }
 
-    /// To the next row, the end, or so many steps before them.
-    fn go_to_next_stop(&mut self, most: u64) -> Result<(), SessionError> {
-        // A bearing goes on from before a step that failed or was shortened by the end, equilibria from
-        // before the last one, so that it is found again; others from their rows.
+    /// Advances to the next row, the end, or by at most `most` steps.
+    fn advance_to_next_event(&mut self, most: u64) -> Result<(), SessionError> {
+        // A bearing resumes from the state before a failed step or a step shortened by the end, and a quasi-static sequence
+        // from before its last equilibrium, which is then computed again; other runs resume from their rows.
         let keeps_rows =
             matches!(self.motion, Motion::Solid(_) | Motion::Housed(_) | Motion::Rubber(_));
         if !keeps_rows {
@@ -255,7 +252,7 @@ impl<'p> Session<'p> {
         if arrival.row {
             let on_grid = keeps_rows && self.clock.is_on_grid(self.motion.done());
             if keeps_rows && !on_grid {
-                // A longer run would not look here: it goes on from before.
+                // A longer run has no row at this time: it resumes from the state before.
                 self.keep();
             }
             self.record(arrival.completes)?;
@@ -286,7 +283,7 @@ impl<'p> Session<'p> {
                 recorder.record_solid(&mut moving.solid, watch, *energy_limit)?;
             }
             Motion::Housed(housed) => recorder.record_housed(housed, watch, *energy_limit)?,
-            Motion::QuasiStaticSequence(course) => recorder.record_equilibrium(course),
+            Motion::QuasiStaticSequence(sequence) => recorder.record_equilibrium(sequence),
             Motion::Rubber(moving) => recorder.record_rubber(&moving.solid)?,
         }
         self.clock.count_row(self.motion.time());
@@ -301,7 +298,7 @@ impl<'p> Session<'p> {
         self.kept_ran.1 = self.recorder.ran;
     }
 
-    /// How often each stage of the run has run, before it was resumed as well.
+    /// Number of executions of each stage, including those before the run was resumed.
     pub fn ran(&self) -> StageCounts {
         self.with_before(&self.motion.ran(), &self.recorder.ran)
     }
@@ -313,8 +310,8 @@ impl<'p> Session<'p> {
         all
     }
 
-    /// What a later run goes on from: the last sound state of a run that is complete or has failed, and of
-    /// those whose state is that of their rows; the present one of a run under way.
+    /// State to resume from: the last valid state if the run is complete or has failed, or if it resumes from its rows;
+    /// otherwise the present state.
     pub fn resumable(&mut self) -> Sound {
         let by_rows = matches!(
             self.motion,
@@ -328,7 +325,7 @@ impl<'p> Session<'p> {
         Sound { checkpoint: self.motion.checkpoint(), watch: self.watch, rows, ran: self.ran() }
     }
 
-    /// Rows at equal intervals: all but a last one that the end of the run has put off the grid.
+    /// Number of rows at equal intervals: all except a last one that the end of the run has moved off the grid.
     pub fn rows_on_grid(&self) -> usize {
         let rows = self.recorder.rows();
         if rows < 2 {
@@ -340,7 +337,7 @@ impl<'p> Session<'p> {
         if whole { rows } else { rows - 1 }
     }
 
-    /// Time of a row as people write it, s.
+    /// Rounded time of a row, s.
     pub fn row_time(&self, row: usize) -> f64 {
         readable(row, self.recorder.row(row)[0], self.clock.row_interval())
     }
@@ -353,14 +350,14 @@ impl<'p> Session<'p> {
         self.recorder.series(self.recorder.rows())
     }
 
-    /// Displacements of a solid, m; empty where there is none of that number. In a window they are half a
-    /// step of its own ahead of the bodies' time.
+    /// Displacements of a solid, m; empty if there is no solid with this number. In a coupled run they are half a step of the
+    /// solid ahead of the bodies' time.
     pub fn displacement(&self, solid: usize) -> Vec<Vec3> {
         let of = |solid: &&ExplicitSolid| {
             solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect()
         };
         match &self.motion {
-            Motion::QuasiStaticSequence(course) => course.displacement(solid),
+            Motion::QuasiStaticSequence(sequence) => sequence.displacement(solid),
             Motion::Rubber(moving) if solid == 0 => moving.solid.displacement().to_vec(),
             motion => motion.solids().get(solid).map_or_else(Vec::new, of),
         }

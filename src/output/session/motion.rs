@@ -1,5 +1,5 @@
-//! What moves in a run: bearings, a solid, bearings and solids exchanging impulses, or one equilibrium after
-//! the other.
+//! Parts of a run and their time integration: bodies with bearings, a solid, bodies and solids coupled by impulses, or a
+//! quasi-static sequence.
 
 use super::SessionError;
 use super::rubber::{MovingRubber, RubberParts};
@@ -26,7 +26,6 @@ use crate::solids::rubber::checkpoint::RubberCheckpoint;
 use crate::solids::step_limit::{SolidStepLimit, step_limit};
 use crate::solids::threads::WorkerPool;
 
-/// What a run is made of.
 pub enum Parts<'p> {
     Bearing(Box<Assembly>),
     Solid(SolidParts<'p>),
@@ -47,18 +46,16 @@ impl From<DynamicProblem> for Parts<'_> {
     }
 }
 
-/// A solid by itself.
 #[derive(Clone, Copy)]
 pub struct SolidParts<'p> {
     pub setup: &'p SolidSetup,
     pub method: ExplicitMethod,
     pub stepping: SolidStepping,
-    /// Threads that step it, with the same bits.
+    /// Number of threads for the solid; results are the same bits.
     pub threads: usize,
 }
 
-/// Bodies with their bearings, solids in explicit steps with the seats of one in the other, and bushings in steps of
-/// their own.
+/// Bodies with their bearings, solids in explicit steps with the fits between them, and bushings with their own steps.
 #[derive(Clone, Debug)]
 pub struct HousedParts<'p> {
     pub assembly: Assembly,
@@ -66,13 +63,13 @@ pub struct HousedParts<'p> {
     pub seats: Vec<Seat>,
     pub bushings: Vec<BondedPart<'p>>,
     pub options: ExchangeOptions,
-    /// Threads that step the solids, with the same bits.
+    /// Number of threads for the solids; results are the same bits.
     pub threads: usize,
 }
 
 impl<'p> HousedParts<'p> {
-    /// Shafts and bushings in elements beside fixed races, on one thread. What `options` allow to go missing is for all
-    /// together, not for the bearings alone.
+    /// Shafts and bushings in elements with fixed outer races, on one thread. The energy limit of `options` applies to the
+    /// whole, not to the bearings alone.
     pub fn without_housings(
         assembly: Assembly,
         solids: Vec<SolidPart>,
@@ -85,15 +82,15 @@ impl<'p> HousedParts<'p> {
     }
 }
 
-/// Bodies, bearings and condensed housings that go through equilibria, and the solids of these.
+/// Bodies, bearings and condensed housings of a quasi-static sequence, and the solid models of the housings.
 #[derive(Clone)]
 pub struct CourseParts<'p> {
     pub problem: QuasiStaticProblem<'p>,
-    /// One for each seat.
+    /// One model per housing fit.
     pub models: Vec<&'p SolidModel>,
 }
 
-/// What moves.
+/// Present state of a run, by kind.
 pub enum Motion<'p> {
     Bearing(Box<Simulation>),
     Solid(Box<MovingSolid>),
@@ -102,14 +99,14 @@ pub enum Motion<'p> {
     Rubber(Box<MovingRubber<'p>>),
 }
 
-/// A solid that several threads may step.
+/// A solid and the number of threads that step it.
 pub struct MovingSolid {
     pub solid: ExplicitSolid,
     pub threads: usize,
 }
 
 impl Motion<'_> {
-    /// How often each stage has run since this session began.
+    /// Number of executions of each stage since this session began.
     pub fn ran(&self) -> StageCounts {
         match self {
             Motion::Bearing(simulation) => simulation.system.ran.clone(),
@@ -117,14 +114,14 @@ impl Motion<'_> {
                 StageCounts { solids: vec![moving.solid.ran], ..StageCounts::default() }
             }
             Motion::Housed(housed) => housed.ran(),
-            Motion::QuasiStaticSequence(course) => course.ran.clone(),
+            Motion::QuasiStaticSequence(sequence) => sequence.ran.clone(),
             Motion::Rubber(moving) => {
                 StageCounts { solids: vec![*moving.solid.ran()], ..StageCounts::default() }
             }
         }
     }
 
-    /// The same into counts that have room.
+    /// Like [`Motion::ran`], into existing counts.
     pub(super) fn ran_into(&self, to: &mut StageCounts) {
         match self {
             Motion::Bearing(simulation) => to.copy_from(&simulation.system.ran),
@@ -132,31 +129,31 @@ impl Motion<'_> {
         }
     }
 
-    /// Counts anew: what has run before is kept elsewhere.
+    /// Resets the counts; earlier executions are counted elsewhere.
     pub(super) fn forget_ran(&mut self) {
         match self {
             Motion::Bearing(simulation) => simulation.system.ran.clear(),
             Motion::Solid(moving) => moving.solid.ran = Counts::default(),
             Motion::Housed(housed) => housed.forget_ran(),
-            Motion::QuasiStaticSequence(course) => course.ran.clear(),
+            Motion::QuasiStaticSequence(sequence) => sequence.ran.clear(),
             Motion::Rubber(moving) => moving.solid.forget_ran(),
         }
     }
 }
 
-/// All that a motion goes on from with the same bits.
+/// Complete state of a motion, to resume with the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Checkpoint {
     Bearing(Box<BearingCheckpoint>),
     Solid(Box<SolidCheckpoint>, SolidStepLimit),
     Housed(Box<ExchangeCheckpoint>, Windows),
     QuasiStaticSequence(QuasiStaticCheckpoint),
-    /// And the rows behind the first.
+    /// State, and the number of rows after the first.
     Rubber(Box<RubberCheckpoint>, u64),
 }
 
 impl<'p> Motion<'p> {
-    /// At the start, with the clock of the run.
+    /// Initial motion, with the clock of the run.
     pub(super) fn start(
         parts: Parts<'p>,
         request: &RunRequest,
@@ -182,9 +179,9 @@ impl<'p> Motion<'p> {
                 (Motion::Housed(Box::new(housed)), clock)
             }
             Parts::QuasiStaticSequence(parts) => {
-                let course = QuasiStaticSequence::new(parts.problem, interval);
+                let sequence = QuasiStaticSequence::new(parts.problem, interval);
                 let clock = Clock { step: interval, steps_per_row: 1, ..Clock::default() };
-                (Motion::QuasiStaticSequence(Box::new(course)), clock)
+                (Motion::QuasiStaticSequence(Box::new(sequence)), clock)
             }
             Parts::Rubber(parts) => {
                 let moving = parts.started(interval)?;
@@ -201,7 +198,7 @@ impl<'p> Motion<'p> {
         Ok((motion, clock))
     }
 
-    /// Where a checkpoint was taken; `clock` is that of the kept run.
+    /// Motion at a checkpoint; `clock` is that of the stored run.
     pub(super) fn resume(
         parts: Parts<'p>,
         request: &RunRequest,
@@ -229,9 +226,9 @@ impl<'p> Motion<'p> {
                 Motion::Housed(Box::new(housed))
             }
             (Parts::QuasiStaticSequence(parts), Checkpoint::QuasiStaticSequence(kept)) => {
-                let mut course = QuasiStaticSequence::new(parts.problem, clock.interval);
-                course.restore(kept)?;
-                Motion::QuasiStaticSequence(Box::new(course))
+                let mut sequence = QuasiStaticSequence::new(parts.problem, clock.interval);
+                sequence.restore(kept)?;
+                Motion::QuasiStaticSequence(Box::new(sequence))
             }
             (Parts::Rubber(parts), Checkpoint::Rubber(kept, rows)) => {
                 let mut moving = parts.at_rest(clock.interval)?;
@@ -244,7 +241,7 @@ impl<'p> Motion<'p> {
         Ok(motion)
     }
 
-    /// Whole steps up to the end: of a solid to the one nearest to it, of others to the nearest row.
+    /// Number of whole steps to the end: for a solid to the nearest step, for others to the nearest row.
     fn last(&self, clock: &Clock) -> Option<u64> {
         match self {
             Motion::Bearing(_) => None,
@@ -256,15 +253,15 @@ impl<'p> Motion<'p> {
         }
     }
 
-    /// What moves or stands besides solids by themselves.
+    /// Bodies and bearings; `None` for a single solid.
     pub fn assembly(&self) -> Option<&Assembly> {
         match self {
-            Motion::QuasiStaticSequence(course) => Some(&course.problem.assembly),
+            Motion::QuasiStaticSequence(sequence) => Some(&sequence.problem.assembly),
             motion => motion.bearing().map(|simulation| &simulation.system.assembly),
         }
     }
 
-    /// Bodies and bearings, where they move in steps.
+    /// Simulation of bodies and bearings; `None` if they are not integrated in time.
     pub fn bearing(&self) -> Option<&Simulation> {
         match self {
             Motion::Bearing(simulation) => Some(simulation),
@@ -281,12 +278,11 @@ impl<'p> Motion<'p> {
         }
     }
 
-    /// Whether a watch balances the energy of all that moves, solids with it.
+    /// Returns whether the energy balance covers all parts, including solids.
     pub fn is_balanced_whole(&self) -> bool {
         matches!(self, Motion::Solid(_) | Motion::Housed(_))
     }
 
-    /// The solids that move in steps.
     pub fn solids(&self) -> Vec<&ExplicitSolid> {
         match self {
             Motion::Solid(moving) => vec![&moving.solid],
@@ -295,29 +291,29 @@ impl<'p> Motion<'p> {
         }
     }
 
-    /// s.
+    /// Present time, s.
     pub fn time(&self) -> f64 {
         match self {
             Motion::Bearing(simulation) => simulation.time,
             Motion::Solid(moving) => moving.solid.time,
             Motion::Housed(housed) => housed.time(),
-            Motion::QuasiStaticSequence(course) => course.time(),
+            Motion::QuasiStaticSequence(sequence) => sequence.time(),
             Motion::Rubber(moving) => moving.solid.time(),
         }
     }
 
-    /// Steps, windows or equilibria so far.
+    /// Number of steps, coupling steps or equilibria so far.
     pub fn done(&self) -> u64 {
         match self {
             Motion::Bearing(simulation) => simulation.steps,
             Motion::Solid(moving) => moving.solid.steps,
             Motion::Housed(housed) => housed.exchanges,
-            Motion::QuasiStaticSequence(course) => course.found,
+            Motion::QuasiStaticSequence(sequence) => sequence.found,
             Motion::Rubber(moving) => moving.rows,
         }
     }
 
-    /// Up to what is due next, in at most `most` steps.
+    /// Advances to the next event of the clock, in at most `most` steps.
     pub(super) fn advance(
         &mut self,
         clock: &mut Clock,
@@ -341,7 +337,7 @@ impl<'p> Motion<'p> {
                     }
                 }
             }
-            Motion::QuasiStaticSequence(course) => course.find_next()?,
+            Motion::QuasiStaticSequence(sequence) => sequence.find_next()?,
             Motion::Rubber(moving) => {
                 (0..count).try_for_each(|_| moving.go_to_next_row())?;
             }
@@ -350,15 +346,14 @@ impl<'p> Motion<'p> {
         Ok(Arrival { row, completes })
     }
 
-    /// Where it is now.
     pub(super) fn checkpoint(&mut self) -> Checkpoint {
-        let mut kept = self.room();
+        let mut kept = self.empty_checkpoint();
         self.checkpoint_into(&mut kept);
         kept
     }
 
-    /// A checkpoint to be written to.
-    pub(super) fn room(&self) -> Checkpoint {
+    /// Empty checkpoint for [`Motion::checkpoint_into`].
+    pub(super) fn empty_checkpoint(&self) -> Checkpoint {
         match self {
             Motion::Bearing(_) => Checkpoint::Bearing(Box::default()),
             Motion::Solid(moving) => Checkpoint::Solid(Box::default(), moving.solid.limit),
@@ -370,7 +365,7 @@ impl<'p> Motion<'p> {
         }
     }
 
-    /// The same as [`Motion::checkpoint`]; a bearing, which is kept before each step, allocates nothing.
+    /// Like [`Motion::checkpoint`], but without allocation for a bearing, which is stored before each step.
     pub(super) fn checkpoint_into(&mut self, kept: &mut Checkpoint) {
         match (self, kept) {
             (Motion::Bearing(simulation), Checkpoint::Bearing(kept)) => {
@@ -380,14 +375,14 @@ impl<'p> Motion<'p> {
                 moving.solid.checkpoint_into(kept);
             }
             (Motion::Housed(housed), Checkpoint::Housed(kept, _)) => housed.checkpoint_into(kept),
-            (Motion::QuasiStaticSequence(course), Checkpoint::QuasiStaticSequence(kept)) => {
-                *kept = course.checkpoint()
+            (Motion::QuasiStaticSequence(sequence), Checkpoint::QuasiStaticSequence(kept)) => {
+                *kept = sequence.checkpoint()
             }
             (Motion::Rubber(moving), Checkpoint::Rubber(kept, rows)) => {
                 (**kept, *rows) = (moving.solid.checkpoint(), moving.rows);
             }
             (motion, kept) => {
-                *kept = motion.room();
+                *kept = motion.empty_checkpoint();
                 motion.checkpoint_into(kept);
             }
         }
@@ -416,8 +411,7 @@ impl SolidParts<'_> {
 }
 
 impl<'p> HousedParts<'p> {
-    /// All at the start, in windows that divide the rows, which are `interval` apart (s); and how many
-    /// a row has.
+    /// Initial exchange, with coupling steps that divide the output interval `interval` (s), and their number per row.
     ///
     /// # Errors
     /// As [`Exchange::new`].

@@ -1,4 +1,4 @@
-//! A solid of rubber that goes from row to row in implicit steps.
+//! Implicit time integration of a rubber solid from row to row.
 
 use super::SessionError;
 use crate::scene::build::rubber::RubberSetup;
@@ -6,31 +6,29 @@ use crate::solids::rubber::checkpoint::RubberCheckpoint;
 use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
-/// A solid of rubber by itself.
 #[derive(Clone, Copy)]
 pub struct RubberParts<'p> {
     pub setup: &'p RubberSetup,
     pub stepping: Stepping,
 }
 
-/// A solid of rubber on its way, by rows.
 pub struct MovingRubber<'p> {
     pub solid: RubberSolid<'p>,
     pub stepping: Stepping,
-    /// Rows behind the first, and the time between them, s.
+    /// Number of rows after the first, and the output interval, s.
     pub rows: u64,
     pub interval: f64,
 }
 
 impl<'p> RubberParts<'p> {
-    /// At rest at t = 0, or where a jump there takes it.
+    /// State at t = 0, including a step of the loads or supports there.
     pub(super) fn started(&self, interval: f64) -> Result<MovingRubber<'p>, SessionError> {
         let mut moving = self.at_rest(interval)?;
         moving.go_to(0.0)?;
         Ok(moving)
     }
 
-    /// Before anything has happened.
+    /// State at rest, before t = 0.
     pub(super) fn at_rest(&self, interval: f64) -> Result<MovingRubber<'p>, RubberError> {
         let options = StepOptions { stepping: self.stepping, ..StepOptions::default() };
         let solid = RubberSolid::new(&self.setup.model, options)?;
@@ -39,7 +37,6 @@ impl<'p> RubberParts<'p> {
 }
 
 impl MovingRubber<'_> {
-    /// On to the next row.
     pub(super) fn go_to_next_row(&mut self) -> Result<(), RubberError> {
         self.go_to((self.rows + 1) as f64 * self.interval)?;
         self.rows += 1;

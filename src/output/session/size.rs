@@ -1,19 +1,18 @@
-//! How large the table of a run becomes, before anything is computed.
+//! Size of the table of a run, computed before the run.
 
 use super::{Parts, RunRequest, SessionError};
 use crate::numeric::clock::to_digits;
 use crate::output::recorder::Recorder;
 use std::collections::HashSet;
 
-/// Most values of a table: kept in memory, copied for the results and written twice.
+/// Limit on the number of values of a table: it is kept in memory, copied for the results and written twice.
 pub(super) const MOST_VALUES: f64 = 1e8;
 
-/// How large the table of a run becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableSize {
     pub rows: f64,
     pub columns: usize,
-    /// An output interval that is not refused, s: the shortest one, to two digits upwards.
+    /// Shortest permitted output interval, s, rounded up to two digits.
     pub shortest: f64,
 }
 
@@ -27,10 +26,10 @@ impl std::fmt::Display for TableSize {
     }
 }
 
-/// Rows and channels that a run is going to write.
+/// Number of rows and channels of a run.
 ///
 /// # Errors
-/// More than are taken.
+/// More values than permitted.
 pub fn table_size<'p>(
     parts: impl Into<Parts<'p>>,
     request: &RunRequest,
@@ -43,18 +42,18 @@ pub(super) fn size_of(
     request: &RunRequest,
 ) -> Result<TableSize, SessionError> {
     let mut names = HashSet::new();
-    let twice = recorder.columns().iter().find(|column| !names.insert(&column.name));
-    if let Some(column) = twice {
+    let repeated = recorder.columns().iter().find(|column| !names.insert(&column.name));
+    if let Some(column) = repeated {
         return Err(SessionError::SharedColumn(column.name.clone()));
     }
     let columns = recorder.columns().len();
     let rows = (request.end / request.output_interval).ceil() + 1.0;
-    // A row more than intervals.
+    // There is one row more than intervals.
     let shortest = request.end / (MOST_VALUES / columns as f64 - 2.0).max(1.0);
     let digit = libm::pow(10.0, libm::log10(shortest).floor() - 1.0);
     let shortest = (shortest / digit).ceil() * digit;
     let size = TableSize { rows, columns, shortest };
-    // NaN is too much.
+    // Also rejects NaN.
     if rows * columns as f64 <= MOST_VALUES {
         Ok(size)
     } else {

@@ -1,4 +1,4 @@
-//! Arrays of a state that are too long for text: `state-N.npy`, a row a node.
+//! Long arrays of a state, in `state-N.npy` with one row per node.
 
 use super::{StateError, entries::Refused, friction_entry};
 use crate::output::atomic::write_atomic;
@@ -10,21 +10,21 @@ use ndarray::{Array2, Axis, Slice};
 use std::ops::Range;
 use std::path::Path;
 
-/// Numbers kept for each node of a solid.
+/// Number of values per node of a solid.
 const WIDTH: usize = 8;
 
-/// Name of the arrays of a state after so many steps.
+/// Name of the array file of a state after `steps` steps.
 pub(super) fn arrays_name(steps: u64) -> String {
     format!("state-{steps}.npy")
 }
 
-/// Name of the file with the numbers of bushings after so many windows.
+/// Name of the file with the values of bushings after `windows` coupling steps.
 pub(super) fn bushings_name(windows: u64) -> String {
     format!("state-{windows}.bushings.npy")
 }
 
-/// Writes the arrays of a checkpoint after so many steps: of the nodes of one solid behind the other, or of
-/// those of condensed bores. Returns the name of the file, if there is something to write.
+/// Writes the arrays of a checkpoint after `steps` steps: the nodes of all solids in sequence, or of all condensed
+/// bores. Returns the name of the file; `None` if there are no arrays.
 pub(super) fn write_arrays(
     folder: &Path,
     checkpoint: &Checkpoint,
@@ -92,8 +92,8 @@ pub(super) fn table(folder: &Path, file: &str, shape: (usize, usize)) -> Result<
     Ok(arrays)
 }
 
-/// The arrays of a solid; `file` is named in `folder` and has so many `nodes` in all, its own being those of
-/// `rows`. Time, steps and work stay zero.
+/// Arrays of a solid from `file` in `folder`, which has `nodes` rows in total; those of this solid are `rows`.
+/// Time, steps and work are zero.
 pub(super) fn read_arrays(
     folder: &Path,
     file: &str,
@@ -116,7 +116,7 @@ pub(super) fn read_arrays(
     })
 }
 
-/// The nodes of each condensed bore that touched, of so many.
+/// Contact nodes of each condensed bore; `nodes` holds the number of nodes of each bore.
 pub(super) fn read_touching(
     folder: &Path,
     file: &str,
@@ -133,7 +133,7 @@ pub(super) fn read_touching(
     Ok(nodes.iter().map(of_bore).collect())
 }
 
-/// Removes arrays of states that are not `kept` nor beside it. What cannot be removed stays: it harms nothing.
+/// Removes arrays of states other than `kept` and the files that belong to it. Files that cannot be removed are left.
 pub fn remove_arrays(folder: &Path, kept: &str) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     // "state-12." of "state-12.npy".

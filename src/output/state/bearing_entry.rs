@@ -1,4 +1,4 @@
-//! The section of `state.json` of bodies and bearings in motion.
+//! Section of `state.json` with the state of bodies and bearings.
 
 use super::entries::Refused;
 use crate::assembly::ledger_watch::LedgerWatch;
@@ -14,7 +14,6 @@ use crate::motion::step_watch::{StepWatch, Stiffness};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-/// A bearing in motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BearingEntry {
@@ -26,23 +25,23 @@ pub struct BearingEntry {
     /// See [`Extremes::to_numbers`].
     pub extremes: Vec<f64>,
     pub state: Vec<f64>,
-    /// Kinetic, contact, cage contact, gravity, foundation, ball contact, J.
+    /// Initial energies: kinetic, contact, cage contact, gravity, foundation, ball contact, J.
     pub first_energy: [f64; 6],
-    /// Of reduced solids: kinetic, strain, seats, J.
+    /// Initial energies of reduced solids: kinetic, strain, fits, J.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub first_energy_of_solids: Option<[f64; 3]>,
-    /// Of bending of shafts: kinetic, strain, J.
+    /// Initial energies of shaft bending: kinetic, strain, J.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub first_energy_of_bending: Option<[f64; 2]>,
     pub largest_contact_energy: f64,
     /// See [`ContactTurnover`]: sum and last, J.
     pub contact_turnover: [f64; 2],
-    /// See [`LedgerWatch`]: energy turned over and the largest residual, J; looks at which it was open.
+    /// See [`LedgerWatch`]: energy exchanged and the largest residual, J; number of checks that did not close.
     pub ledger: ([f64; 2], u32),
     /// Evaluations, distance tests, loaded contacts, slices, pocket tests, guide tests,
     /// ball tests, factorisations, rejected steps.
     pub work: [u64; 9],
-    /// With error control: largest overlap (m), error of the step before, smallest and largest
+    /// With error control: largest overlap (m), error of the previous step, smallest and largest
     /// step (s).
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub control: Option<[f64; 4]>,
@@ -54,7 +53,7 @@ pub struct LimitEntry {
     pub step: f64,
     /// Real and imaginary part, 1/s.
     pub eigenvalue: [f64; 2],
-    /// State entry.
+    /// Index in the state vector.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub component: Option<usize>,
 }
@@ -65,7 +64,7 @@ pub struct LimitEntry {
 pub struct StepWatchEntry {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub smallest: Option<f64>,
-    /// Oscillation, 1/s²; decay, 1/s.
+    /// Stiffest oscillation, 1/s², and decay, 1/s.
     pub stiffest: [f64; 2],
     pub shortened: u64,
 }
@@ -115,7 +114,7 @@ impl BearingEntry {
         }
     }
 
-    /// What has to be finite.
+    /// Values that must be finite, by kind.
     pub(super) fn numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
         let limit = self.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
         let watch = &self.step_watch;
@@ -136,7 +135,7 @@ impl BearingEntry {
     }
 
     /// # Errors
-    /// Lists of other lengths than the problem asks for, a step that is none.
+    /// Lists of the wrong length, an invalid step.
     pub(super) fn checked(
         &self,
         time: f64,
@@ -195,7 +194,6 @@ impl BearingEntry {
                     bending_strain,
                     seat,
                 },
-                // A run starts with none.
                 before: 0.0,
                 largest_contact: self.largest_contact_energy,
                 turnover: ContactTurnover {

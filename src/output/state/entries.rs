@@ -1,4 +1,4 @@
-//! Sections of `state.json`: what moves, as plain numbers.
+//! Sections of `state.json` as plain numbers.
 
 use super::{
     StateFile,
@@ -21,7 +21,6 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::Path;
 
-/// Why a state is not gone on from.
 pub(super) enum Refused {
     Damaged(&'static str),
     Series(SeriesError),
@@ -33,18 +32,17 @@ impl From<SeriesError> for Refused {
     }
 }
 
-/// A solid in explicit steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolidEntry {
-    /// File with one row a node, those of one solid behind the other's: displacement (m), rate (m/s), work of
+    /// File with one row per node, all solids in sequence: displacement (m), rate (m/s), work of
     /// loads and of damping (J).
     pub arrays: String,
     /// s.
     pub time: f64,
     pub steps: u64,
     pub limit: SolidLimitEntry,
-    /// Force evaluations and elements in them.
+    /// Number of force evaluations and of evaluated elements.
     pub work: [u64; 2],
 }
 
@@ -86,23 +84,22 @@ impl SolidLimitEntry {
     }
 }
 
-/// What bodies and solids exchange.
+/// State of the coupling between bodies and solids.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExchangeEntry {
-    /// Of each solid, in a window.
+    /// Number of steps of each solid in a coupling step.
     pub steps_per_window: Vec<usize>,
-    /// Of each solid.
     pub seats: Vec<Vec<SeatEntry>>,
-    /// File with the numbers of all bushings in one column, and how many each has.
+    /// File with the values of all bushings in one column, and the number of values of each.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub bushings: Option<(String, Vec<usize>)>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub friction: Option<FrictionEntry>,
-    /// Of each solid that is a shaft: work and heat of its joints, work of its unbalances, J; of others none.
+    /// For each shaft in elements: work and heat of its joints, work of its unbalances, J; empty for other solids.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub shafts: Vec<Vec<f64>>,
-    /// What the ledger of all held at the start, J.
+    /// Initial value of the total energy balance, J.
     pub first: f64,
 }
 
@@ -112,24 +109,24 @@ pub struct ExchangeEntry {
 pub struct SeatEntry {
     /// N·s.
     pub impulse: [f64; 3],
-    /// On the body, J.
+    /// Work on the body, J.
     pub work: f64,
-    /// Work (J), radius (m) and load (N) of an interference that grows in.
+    /// Work (J), radius (m) and load (N) of an interference that is applied gradually.
     pub growth: [f64; 3],
     pub tested: u64,
     pub sorts: u64,
 }
 
-/// A course of equilibria.
+/// State of a quasi-static sequence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CourseEntry {
-    /// File with one row a node of all bores, one after the other: 1 where it touched.
+    /// File with one row per node of all bores in sequence: 1 for a contact node.
     pub arrays: String,
     pub largest_residual: f64,
     pub iterations: usize,
     pub contact_changes: usize,
-    /// Where the search found the bodies (m, rad).
+    /// Body coordinates of the last equilibrium (m, rad).
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub places: Option<Vec<[f64; 5]>>,
 }
@@ -145,7 +142,7 @@ impl SolidEntry {
         }
     }
 
-    /// Where the arrays have so many `nodes` in all, those of `rows` its own.
+    /// Checkpoint of this solid, whose arrays are `rows` of a file with `nodes` rows in total.
     fn checkpoint(
         &self,
         folder: &Path,
@@ -222,7 +219,7 @@ impl CourseEntry {
     }
 }
 
-/// Time (s) and number of steps, windows or equilibria that a checkpoint is of.
+/// Time (s) and number of steps, coupling steps or equilibria of a checkpoint.
 pub(super) fn place(checkpoint: &Checkpoint) -> (f64, u64) {
     match checkpoint {
         Checkpoint::Bearing(kept) => (kept.time, kept.steps),
@@ -233,21 +230,21 @@ pub(super) fn place(checkpoint: &Checkpoint) -> (f64, u64) {
     }
 }
 
-const LACKS: Refused = Refused::Damaged("it lacks a part that the scene has");
+const MISSING_PART: Refused = Refused::Damaged("a part of the scene is missing");
 
-/// What a state file read from `folder` says of these parts.
+/// Checkpoint from a state file in `folder` for these parts.
 pub(super) fn checkpoint(
     folder: &Path,
     file: &StateFile,
     parts: &Parts,
 ) -> Result<Checkpoint, Refused> {
-    let bearing = || file.bearing.as_deref().ok_or(LACKS);
+    let bearing = || file.bearing.as_deref().ok_or(MISSING_PART);
     Ok(match parts {
         Parts::Bearing(assembly) => {
             Checkpoint::Bearing(Box::new(bearing()?.checked(file.time, assembly)?))
         }
         Parts::Solid(parts) => {
-            let [solid] = file.solids.as_slice() else { return Err(LACKS) };
+            let [solid] = file.solids.as_slice() else { return Err(MISSING_PART) };
             let nodes = parts.setup.problem.nodes.len();
             let kept = solid.checkpoint(folder, nodes, 0..nodes)?;
             Checkpoint::Solid(Box::new(kept), solid.limit.to_limit())
@@ -258,45 +255,45 @@ pub(super) fn checkpoint(
             Checkpoint::Housed(Box::new(kept), windows)
         }
         Parts::QuasiStaticSequence(parts) => {
-            let course = file.course.as_ref().ok_or(LACKS)?;
+            let sequence = file.course.as_ref().ok_or(MISSING_PART)?;
             let problem = &parts.problem;
             let nodes: Vec<usize> = problem.seats.iter().map(|s| s.bore.nodes.len()).collect();
-            let touching = read_touching(folder, &course.arrays, &nodes)?;
-            let places = course.places.clone();
+            let touching = read_touching(folder, &sequence.arrays, &nodes)?;
+            let places = sequence.places.clone();
             if places.as_ref().is_some_and(|at| at.len() != problem.assembly.bodies.len()) {
-                return Err(LACKS);
+                return Err(MISSING_PART);
             }
             Checkpoint::QuasiStaticSequence(QuasiStaticCheckpoint {
                 time: file.time,
                 found: file.steps,
                 effort: Effort {
-                    largest_residual: course.largest_residual,
-                    iterations: course.iterations,
-                    contact_changes: course.contact_changes,
+                    largest_residual: sequence.largest_residual,
+                    iterations: sequence.iterations,
+                    contact_changes: sequence.contact_changes,
                 },
                 memory: CourseMemory { places, touching },
                 nodes,
             })
         }
         Parts::Rubber(parts) => {
-            let kept = file.rubber.as_ref().ok_or(LACKS)?;
+            let kept = file.rubber.as_ref().ok_or(MISSING_PART)?;
             Checkpoint::Rubber(Box::new(kept.checkpoint(folder, file.time, parts)?), file.steps)
         }
     })
 }
 
-/// The same of bodies, kept in `simulation`, and solids with seats between them.
+/// Checkpoint of bodies, given in `simulation`, and solids with the fits between them.
 fn exchange(
     folder: &Path,
     file: &StateFile,
     parts: &HousedParts,
     simulation: BearingCheckpoint,
 ) -> Result<(ExchangeCheckpoint, Windows), Refused> {
-    let exchange = file.exchange.as_ref().ok_or(LACKS)?;
+    let exchange = file.exchange.as_ref().ok_or(MISSING_PART)?;
     let ExchangeEntry { steps_per_window, seats, .. } = exchange;
     let count = parts.solids.len();
     if [file.solids.len(), steps_per_window.len(), seats.len()] != [count; 3] {
-        return Err(LACKS);
+        return Err(MISSING_PART);
     }
     if steps_per_window.contains(&0) {
         return Err(Refused::Damaged("no step from one row to the next"));
@@ -305,12 +302,12 @@ fn exchange(
     let mut solids = Vec::with_capacity(count);
     for (index, (entry, seats)) in file.solids.iter().zip(seats).enumerate() {
         if seats.len() != parts.seats.iter().filter(|seat| seat.solid == index).count() {
-            return Err(LACKS);
+            return Err(MISSING_PART);
         }
         let shaft = exchange.shafts.get(index).cloned().unwrap_or_default();
         let joints = parts.solids[index].shaft.as_ref().map(|of| of.joints.len());
         if shaft.len() != joints.map_or(0, |joints| 2 * joints + 1) {
-            return Err(LACKS);
+            return Err(MISSING_PART);
         }
         let from: usize = nodes[..index].iter().sum();
         let rows = from..from + nodes[index];
@@ -332,7 +329,6 @@ fn exchange(
     Ok((ExchangeCheckpoint { simulation, solids, bushings, exchanges, first }, windows))
 }
 
-/// The numbers of each bushing.
 fn read_bushings(
     folder: &Path,
     exchange: &ExchangeEntry,
@@ -341,7 +337,7 @@ fn read_bushings(
     let none = (String::new(), Vec::new());
     let (file, lengths) = exchange.bushings.as_ref().unwrap_or(&none);
     if lengths.len() != parts.bushings.len() {
-        return Err(LACKS);
+        return Err(MISSING_PART);
     }
     if lengths.is_empty() {
         return Ok(Vec::new());

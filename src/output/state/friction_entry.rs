@@ -1,4 +1,4 @@
-//! Springs of the friction in bores, as a state keeps them: `state-N.friction.npy`, a row a node that touches.
+//! Friction springs of bores in a state: `state-N.friction.npy`, one row per contact node.
 
 use super::StateError;
 use super::arrays::{table, write_table};
@@ -10,16 +10,16 @@ use crate::output::session::HousedParts;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Node, where on the race its spring ends (m), how far it is stretched (m), N/m.
+/// Values per node: number, anchor of the spring on the race (m), elongation (m), stiffness (N/m).
 const WIDTH: usize = 8;
 
 /// See [`FrictionCheckpoint`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionEntry {
-    /// File with the springs of all seats, those of one behind the other's.
+    /// File with the springs of all fits in sequence.
     pub arrays: String,
-    /// Of each seat with friction, in the order of the seats: springs, J of heat and of what the normal load has stored.
+    /// For each fit with friction, in order: number of springs, frictional heat and energy stored by the normal load, J.
     pub seats: Vec<(usize, [f64; 2])>,
 }
 
@@ -45,7 +45,7 @@ pub(super) fn write(folder: &Path, checkpoint: &ExchangeCheckpoint) -> Result<()
 }
 
 impl FrictionEntry {
-    /// `None` where every bore is smooth.
+    /// `None` if all bores are frictionless.
     pub(super) fn of(checkpoint: &ExchangeCheckpoint) -> Option<FrictionEntry> {
         let of = |seat: &FrictionCheckpoint| (seat.springs.len(), [seat.heat, seat.load_work]);
         let seats: Vec<_> = kept(checkpoint).map(of).collect();
@@ -58,24 +58,24 @@ impl FrictionEntry {
     }
 }
 
-/// Puts what `entry` keeps into the seats that have friction: those of each solid, in the order of the solids.
+/// Restores the friction of the fits that have it: those of each solid, in the order of the solids.
 pub(super) fn read(
     folder: &Path,
     entry: Option<&FrictionEntry>,
     parts: &HousedParts,
     seats: &mut [&mut SeatCheckpoint],
 ) -> Result<(), Refused> {
-    const OTHERS: Refused =
-        Refused::Damaged("its bores have other friction than those of the scene");
+    const OTHER_FRICTION: Refused =
+        Refused::Damaged("the friction of its bores differs from the scene");
     let by_solid = (0..parts.solids.len())
         .flat_map(|solid| parts.seats.iter().filter(move |seat| seat.solid == solid));
     let rough = seats.iter_mut().zip(by_solid).filter(|(_, seat)| seat.friction.is_some());
     let rough: Vec<_> = rough.collect();
     let Some(FrictionEntry { arrays, seats }) = entry else {
-        return if rough.is_empty() { Ok(()) } else { Err(OTHERS) };
+        return if rough.is_empty() { Ok(()) } else { Err(OTHER_FRICTION) };
     };
     if seats.len() != rough.len() {
-        return Err(OTHERS);
+        return Err(OTHER_FRICTION);
     }
     let rows = table(folder, arrays, (seats.iter().map(|(springs, _)| springs).sum(), WIDTH))?;
     let mut rows = rows.data().rows().into_iter();
@@ -85,7 +85,7 @@ pub(super) fn read(
             let known = seat.nodes.iter().find(|node| f64::from(node.node) == row[0]);
             let follows = |node: u32| list.last().is_none_or(|(last, _)| *last < node);
             let Some(node) = known.map(|node| node.node).filter(|node| follows(*node)) else {
-                return Err(Refused::Damaged("a spring of the friction is at no node of its bore"));
+                return Err(Refused::Damaged("a friction spring is not at a node of its bore"));
             };
             let vector = |from: usize| [row[from], row[from + 1], row[from + 2]];
             let (anchor, stretch, stiffness) = (vector(1), vector(4), row[7]);

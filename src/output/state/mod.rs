@@ -1,9 +1,9 @@
-//! `state.json`: all a run needs to go on with the same bits, a section for each thing that moves. Arrays
-//! that are long lie in `state-N.npy` beside it (N the number of steps), the rows so far in `series.npy`.
+//! `state.json`: everything that a run needs to resume with the same bits, in one section per part. Long arrays
+//! are in `state-N.npy` (N is the number of steps), the rows so far in `series.npy`.
 //!
 //! Numbers are written as the shortest decimal that reads back to the same bits. Series and arrays are
-//! written before the state names them and older arrays are removed after, so that whatever moment a run
-//! is killed at there is one whole state. There may be more rows than it speaks of; those are computed again.
+//! written before the state that names them, and older arrays are removed afterwards, so that one complete state exists
+//! whenever a run is killed. The series may have more rows than the state; those are computed again.
 
 pub mod arrays;
 pub mod bearing_entry;
@@ -38,46 +38,42 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Of `state.json`; the first one had a form of its own for each kind of run, and no number, the second room
-/// for one solid, and two places of the outer race in a course, the third room for the two races of one bearing in one, the
-/// fourth no look at a bearing's ledger between rows.
+/// Format version of `state.json`.
 pub const FORM: u32 = 5;
 
-/// Content of `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateFile {
     pub program: String,
     pub version: String,
-    /// See [`FORM`].
+    /// Format version, see [`FORM`].
     pub form: u32,
     /// See [`fingerprint`].
     pub fingerprint: String,
     pub stopped: Stopped,
-    /// What ended a failed run.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error: Option<String>,
     /// s.
     pub time: f64,
-    /// Steps of a bearing or a solid, windows of both, equilibria.
+    /// Number of steps of a bearing or a solid, of coupling steps, or of equilibria.
     pub steps: u64,
     pub rows: usize,
-    /// When the run was to end, and the times between rows and between fields that it was asked for, s.
+    /// End of the run, output interval and fields interval as requested, s.
     pub end: f64,
     pub output_interval: f64,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub fields_interval: Option<f64>,
-    /// s; zero with error control: rows then are `output_interval` apart.
+    /// Time step, s; zero with error control, where rows are `output_interval` apart.
     pub step: f64,
     pub steps_per_row: u64,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub rows_per_fields: Option<u64>,
     /// Wall time so far, s.
     pub seconds: f64,
-    /// At the start, turned over, largest residual, J, and rows on end whose ledger did not close; of
-    /// runs with a solid.
+    /// Of runs with a solid: initial energy balance, energy exchanged, largest residual, J, and the number of consecutive rows
+    /// whose balance did not close.
     pub ledger: ([f64; 3], u32),
-    /// How often each stage has run: its name, the numbers of its subject, and how often.
+    /// Number of executions of each stage: its name, the numbers of its subject, the count.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub stages: Vec<(String, [usize; 2], u64)>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -95,24 +91,24 @@ pub struct StateFile {
 #[derive(Debug, Error)]
 pub enum StateError {
     #[error(
-        "{} belongs to another scene or mesh: only end, plots and window may change from one part of a \
-         run to the next (a housing.fit_ramp that is not written is a tenth of the end: write it); choose \
-         another --out, or start anew (--fresh)",
+        "{} belongs to another scene or mesh: only end, plots and window may change when a run is resumed \
+         (housing.fit_ramp defaults to a tenth of the end: write it explicitly); choose \
+         another --out, or start again with --fresh",
         path.display()
     )]
     Scene { path: PathBuf },
     #[error(
-        "the {what} beside {} are {} s apart, the scene now asks for {} s; write the interval that the run has, or start \
-         anew (--fresh)", path.display(), rounded(*kept), rounded(*asked)
+        "the {what} in {} are {} s apart, but the scene asks for {} s; write the interval of the earlier run, or start \
+         again with --fresh", path.display(), rounded(*kept), rounded(*asked)
     )]
     Interval { path: PathBuf, what: &'static str, kept: f64, asked: f64 },
-    #[error("{} holds a damaged state: {what}; start anew (--fresh)", path.display())]
+    #[error("{} is damaged: {what}; start again with --fresh", path.display())]
     Damaged { path: PathBuf, what: &'static str },
-    #[error("{} has no rows that fit the state beside it; start anew (--fresh)", path.display())]
+    #[error("{} has no rows that match its state; start again with --fresh", path.display())]
     Rows { path: PathBuf },
-    #[error("the run has already come to {} s, past its new end of {end} s; write a later one, or start anew (--fresh)", rounded(*time))]
+    #[error("the run has already reached {} s, past its new end of {end} s; choose a later end, or start again with --fresh", rounded(*time))]
     Past { time: f64, end: f64 },
-    #[error("{what} is {value}; only finite numbers are kept in a state")]
+    #[error("{what} is {value}; a state can hold finite numbers only")]
     NotFinite { what: &'static str, value: f64 },
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -124,11 +120,10 @@ pub enum StateError {
     Write(#[from] WriteError),
 }
 
-/// Sha256 of what decides every bit of a run but its length: what moves, how it is stepped, what
-/// is recorded, and the version. The end is not in it, so that a run can be extended, nor the
-/// output interval, which is compared by itself.
+/// Sha256 of everything that determines the bits of a run except its length: parts, time stepping, channels and version.
+/// The end is excluded, so that a run can be extended, and so is the output interval, which is compared separately.
 pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
-    // Debug text has every field, and the shortest decimals that tell two numbers apart.
+    // Debug text has every field, and the shortest decimals that distinguish two numbers.
     let channels = &request.channels;
     let groups: Vec<&str> =
         ChannelGroup::ALL.into_iter().filter(|g| channels.contains(g)).map(|g| g.name()).collect();
@@ -153,7 +148,7 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
                     hash.update(format!("{shaft:?}"));
                 }
             }
-            // A smooth bore is what it was when there was no friction.
+            // Keeps the fingerprint of frictionless bores independent of the friction field.
             let seats = format!("{:?}", parts.seats).replace(", friction: None", "");
             hash.update(format!("{seats} {:?}", parts.options));
             parts.bushings.iter().for_each(|bushing| hash_bushing(&mut hash, bushing));
@@ -188,7 +183,7 @@ fn hash_solid(hash: &mut Sha256, solid: &SolidProblem) {
     hash.update(format!("{laws:?} {:?} {:?}", solid.prescribed, solid.loads));
 }
 
-/// Why a state is written, and what the session does not know.
+/// Data of a state that the session does not have.
 #[derive(Clone, Debug)]
 pub struct StateRecord {
     pub fingerprint: String,
@@ -200,7 +195,7 @@ pub struct StateRecord {
 /// Writes `series.npy`, arrays and `state.json` of a session into its results folder.
 ///
 /// # Errors
-/// A number that is not finite (the state there stays), a file that cannot be written.
+/// A number that is not finite (the existing state is kept), a file that cannot be written.
 pub fn save(folder: &Path, session: &mut Session, record: &StateRecord) -> Result<(), StateError> {
     let sound = session.resumable();
     let file = state_file(&sound, &session.clock, record);
@@ -216,15 +211,15 @@ pub fn save(folder: &Path, session: &mut Session, record: &StateRecord) -> Resul
 /// Reads `state.json` of a results folder; `None` if there is none.
 ///
 /// # Errors
-/// A file that cannot be read, is no state, or one of another form.
+/// A file that cannot be read, is not a state, or has another format version.
 pub fn read(folder: &Path) -> Result<Option<StateFile>, StateError> {
     Ok(journal::read(folder, FORM)?)
 }
 
-/// The session that goes on where `file`, read from `folder`, was written.
+/// Session that continues from the state `file`, read from `folder`.
 ///
 /// # Errors
-/// A state of another version or scene, one that is damaged or lacks its rows, an end that has
+/// A state of another version or scene, a damaged state or one without its rows, an end that has
 /// already passed.
 pub fn resume<'p>(
     folder: &Path,
@@ -238,7 +233,7 @@ pub fn resume<'p>(
         return Err(StateError::Scene { path });
     }
     let interval = |what, kept: Option<f64>, asked: Option<f64>, parts: f64| {
-        // Intervals that follow from the end stay what they were when the run is extended, once or again.
+        // Default intervals, which depend on the end, are kept when the run is extended.
         if kept == asked || asked == Some(request.end / parts) {
             return Ok(());
         }
@@ -257,12 +252,12 @@ pub fn resume<'p>(
     let has_control = file.bearing.as_ref().is_some_and(|bearing| bearing.control.is_some());
     let asks_control = matches!(request.options.stepping, Stepping::Accuracy(_));
     if has_control != (asks_control && file.bearing.is_some()) {
-        return Err(damaged("error control without its sizes, or sizes without it"));
+        return Err(damaged("error control without its values, or values without it"));
     }
     let by_time = has_control && file.exchange.is_none();
     let steps_forward = (file.step > 0.0) != by_time && (file.steps_per_row > 0) != by_time;
     if !steps_forward || file.rows_per_fields == Some(0) {
-        return Err(damaged("no step from one row to the next"));
+        return Err(damaged("the step from one row to the next is invalid"));
     }
     let clock = Clock {
         end: request.end,
@@ -273,7 +268,7 @@ pub fn resume<'p>(
         rows_per_fields: file.rows_per_fields,
         ..Clock::default()
     };
-    // Written as it is so that an end that is not a number is refused as well.
+    // The negated form also rejects an end that is NaN.
     let slack = if matches!(parts, Parts::Bearing(_)) { 0.0 } else { 0.5 * file.step };
     let ahead = request.end > file.time - slack;
     if !ahead {
@@ -281,7 +276,7 @@ pub fn resume<'p>(
     }
     let [first, turned_over, largest_residual] = file.ledger.0;
     let watch = LedgerWatch { first, turned_over, largest_residual, open: file.ledger.1 };
-    let ran = ran(file).ok_or_else(|| damaged("a stage that there is not"))?;
+    let ran = ran(file).ok_or_else(|| damaged("an unknown stage"))?;
     let sound = Sound { checkpoint, watch, rows: file.rows, ran };
     let series_path = folder.join(SERIES);
     let series = Series::read_npy(&series_path)?;
@@ -289,7 +284,7 @@ pub fn resume<'p>(
         .ok_or(StateError::Rows { path: series_path })
 }
 
-/// Rows and files of fields of a run whose scene does not say otherwise.
+/// Default numbers of rows and of field files of a run.
 const ROWS: f64 = 1000.0;
 const ROWS_OF_RUBBER: f64 = 100.0;
 const FIELDS: f64 = 20.0;
@@ -347,10 +342,10 @@ fn stages(ran: &StageCounts) -> Vec<(String, [usize; 2], u64)> {
     ran.list().into_iter().map(entry).collect()
 }
 
-/// More things of a kind than any run has.
+/// Upper limit on the index of a subject.
 const MOST_SUBJECTS: usize = 100_000;
 
-/// `None` where a stage or a subject of it is none.
+/// Number of executions of each stage; `None` for an unknown stage or subject.
 fn ran(file: &StateFile) -> Option<StageCounts> {
     let mut ran = StageCounts::default();
     for (name, numbers, count) in &file.stages {
@@ -361,7 +356,7 @@ fn ran(file: &StateFile) -> Option<StageCounts> {
     Some(ran)
 }
 
-/// JSON has no way to write NaN and infinity.
+/// Rejects NaN and infinity, which JSON cannot represent.
 fn check_finite(file: &StateFile) -> Result<(), StateError> {
     let single = [file.time, file.step, file.seconds, file.end, file.output_interval];
     let single = single.into_iter().chain(file.ledger.0).chain(file.fields_interval);
@@ -373,7 +368,7 @@ fn check_finite(file: &StateFile) -> Result<(), StateError> {
         parts.push(("a step or a stress", rubber.numbers()));
     }
     if let Some(exchange) = &file.exchange {
-        parts.push(("what bodies and solids exchange", exchange.numbers()));
+        parts.push(("a coupling value of bodies and solids", exchange.numbers()));
     }
     for (what, values) in parts {
         if let Some(&value) = values.iter().find(|value| !value.is_finite()) {

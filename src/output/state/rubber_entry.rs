@@ -1,4 +1,4 @@
-//! A solid of rubber in `state.json`.
+//! Rubber solid in `state.json`.
 
 use super::arrays::{arrays_name, table};
 use super::entries::Refused;
@@ -12,25 +12,25 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// See [`RubberCheckpoint`]. Arrays have all its long parts in one column.
+/// See [`RubberCheckpoint`]. The array file has all its long parts in one column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RubberEntry {
     pub arrays: String,
-    /// The last step and what the next should be, s.
+    /// Last step and proposed next step, s.
     pub last: f64,
     pub next: f64,
     /// Largest total deviatoric stress so far, Pa.
     pub scale: f64,
-    /// Put in and taken by dashpots so far, J.
+    /// Work done on the solid and energy dissipated so far, J.
     pub work: f64,
     pub dissipated: f64,
-    /// What the stresses of the Maxwell elements did beyond the law of small strain, J.
+    /// Work of the Maxwell stresses beyond the law of small strain, J.
     #[serde(default)]
     pub beyond: f64,
-    /// Steps accepted and undone, iterations and factorisations.
+    /// Number of accepted and rejected steps, iterations and factorisations.
     pub counts: [u64; 4],
-    /// Gain of the step that the factors at hand are of.
+    /// Gain of the step for which the stored factors were computed.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub factored: Option<f64>,
 }
@@ -59,7 +59,7 @@ impl RubberEntry {
             .collect()
     }
 
-    /// At `time` (s), with the arrays from `folder`.
+    /// Checkpoint at `time` (s), with the arrays from `folder`.
     pub(super) fn checkpoint(
         &self,
         folder: &Path,
@@ -94,7 +94,7 @@ impl RubberEntry {
     }
 }
 
-/// Places of nodes and nodes of elements.
+/// Hashes node positions and element connectivity.
 fn hash_mesh<const N: usize>(hash: &mut Sha256, nodes: &[Vec3], elements: &[[u32; N]]) {
     for value in nodes.iter().flatten() {
         hash.update(value.to_bits().to_le_bytes());
@@ -104,7 +104,7 @@ fn hash_mesh<const N: usize>(hash: &mut Sha256, nodes: &[Vec3], elements: &[[u32
     }
 }
 
-/// What decides the bits of a bushing in elements.
+/// Hashes everything that determines the bits of a bushing in elements.
 pub(super) fn hash_bushing(hash: &mut Sha256, part: &BondedPart) {
     match &part.elements {
         BondedElements::Explicit { body, fraction } => {
@@ -120,7 +120,7 @@ pub(super) fn hash_bushing(hash: &mut Sha256, part: &BondedPart) {
     hash.update(format!("{} {:?} {:?}", part.name, part.sleeves, part.spring));
 }
 
-/// What decides the bits of a solid of rubber.
+/// Hashes everything that determines the bits of a rubber solid.
 pub(super) fn hash_rubber(hash: &mut Sha256, parts: &RubberParts) {
     let problem = &parts.setup.model.problem;
     hash_mesh(hash, &problem.nodes, &problem.elements);

@@ -1,4 +1,4 @@
-//! What a bearing in motion says of its steps, its largest loads and its speeds.
+//! Summary of bearings in a transient run: time steps, largest loads, speeds.
 
 use super::{Part, RunReport};
 use crate::assembly::lists::{BallMeeting, Bearing};
@@ -44,7 +44,7 @@ pub(super) fn step(simulation: &Simulation, report: &RunReport) -> Part {
         step.insert("smallest".into(), quantity("smallest", memory.smallest, "s")?);
         step.insert("largest".into(), quantity("largest", memory.largest, "s")?);
         step.insert("scale".into(), quantity("largest overlap", memory.displacement, "m")?);
-        step.insert("reason".into(), json!("error control: as long as the accuracy allows"));
+        step.insert("reason".into(), json!("error control: the longest step within the accuracy"));
         return Ok(Value::Object(step));
     }
     step.insert("size".into(), quantity("step", size, "s")?);
@@ -73,10 +73,10 @@ pub(super) fn step(simulation: &Simulation, report: &RunReport) -> Part {
     Ok(Value::Object(step))
 }
 
-/// Speeds of the ball set over that of the inner race, both seen from the outer one, where balls roll without slip at
-/// the middle of both contacts. With one contact angle it is (1 - γ cos α)/2, γ = r/R. With two the ball's own axis
-/// decides: it spins on the inner race only, (1 - γ cos α_i)/(1 + cos(α_i - α_o)), on the outer one only,
-/// (cos(α_i - α_o) - γ cos α_o)/(1 + cos(α_i - α_o)), or on both in between. In this order: outer control, inner control.
+/// Ratios of ball-set speed to inner-race speed, both relative to the outer race, for rolling without slip at the middle
+/// of both contacts: outer control, then inner control. With one contact angle the ratio is (1 - γ cos α)/2, γ = r/R.
+/// With two it depends on the ball's own axis: spin on the inner race only, (1 - γ cos α_i)/(1 + cos(α_i - α_o)), spin on
+/// the outer race only, (cos(α_i - α_o) - γ cos α_o)/(1 + cos(α_i - α_o)), or values in between for spin on both.
 fn rolling_ratios(geometry: &BearingGeometry, [inner, outer]: [f64; 2]) -> [f64; 2] {
     let gamma = geometry.ball_radius / geometry.pitch_radius;
     let between = libm::cos(inner - outer);
@@ -84,7 +84,7 @@ fn rolling_ratios(geometry: &BearingGeometry, [inner, outer]: [f64; 2]) -> [f64;
         .map(|ratio| ratio / (1.0 + between))
 }
 
-/// Mean speeds over the window beside those of pure rolling at the contact angles that the balls had.
+/// Mean speeds over the window, and the speeds of pure rolling at the mean contact angles.
 pub(super) fn kinematics(
     simulation: &Simulation,
     table: &RunTable,
@@ -92,7 +92,7 @@ pub(super) fn kinematics(
     each_bearing(simulation, |_, bearing| kinematics_of(bearing, table))
 }
 
-/// A section for each bearing under its name, or that of the only one itself.
+/// One section per bearing under its name; for a single bearing the section itself.
 fn each_bearing(
     simulation: &Simulation,
     of: impl Fn(usize, &Bearing) -> Result<Option<Value>, ResultsError>,
@@ -127,11 +127,11 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
     let (angles, named) = match actual {
         [Some(inner), Some(outer)] => (
             [inner.to_radians(), outer.to_radians()],
-            "the mean contact angles over the window, balls by their load",
+            "the mean contact angles over the window, weighted by ball load",
         ),
         _ => (
             [nominal; 2],
-            "the nominal contact angle, since the channels `orbits` are not recorded",
+            "the nominal contact angle, because the channels `orbits` are not recorded",
         ),
     };
     let speeds_at = |angles: [f64; 2]| {
@@ -159,7 +159,7 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
     section.insert("rolling_cage_frequency_inner_control".into(), frequency(inner_control)?);
     let at_nominal = speeds_at([nominal; 2])[0];
     section.insert("rolling_cage_speed_at_nominal_angle".into(), speed(at_nominal)?);
-    let of = "against the nearer of outer and inner control; zero between them";
+    let of = "relative to the nearer of outer and inner control; zero between them";
     section.insert("slip_is".into(), json!(of));
     let orbital: Option<Vec<f64>> =
         (1..=geometry.ball_count).map(|ball| mean(&format!("ball_{ball}_orbital_speed"))).collect();
@@ -177,7 +177,7 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
     Ok(Some(Value::Object(section)))
 }
 
-/// Largest values over all steps, whatever rows were written.
+/// Largest values over all steps, including those between rows.
 pub(super) fn extremes(simulation: &Simulation) -> Part {
     let sections = each_bearing(simulation, |index, bearing| {
         extremes_of(&simulation.extremes[index], bearing).map(Some)
@@ -228,6 +228,6 @@ fn extremes_of(extremes: &Extremes, bearing: &Bearing) -> Part {
         });
         section.insert("between_balls".into(), json!({ "largest_load": largest }));
     }
-    section.insert("of".into(), json!("every accepted step, whatever rows were written"));
+    section.insert("of".into(), json!("every accepted step, including those between rows"));
     Ok(Value::Object(section))
 }

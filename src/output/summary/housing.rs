@@ -1,4 +1,4 @@
-//! What a housing says of its seat, its equilibrium, its inertia and its windows.
+//! Summary of a housing: fit, equilibrium, inertia and coupling steps.
 
 use super::{Part, solid::limit_section};
 use crate::equilibrium::quasi_static_sequence::EquilibriumAt;
@@ -14,12 +14,11 @@ use crate::solids::condensation::{CondensedBore, geometry_error};
 use crate::solids::reduction::CutOff;
 use serde_json::{Map, Value, json};
 
-/// What a largest pressure of bore nodes is worth: measured on housings of 2.4.2, where it moved by 24 %
-/// between meshes whose displacements are 0.7 % apart.
-pub const PEAK_PRESSURE: &str =
-    "of one node: it moves by tens of per cent with the mesh where displacements move by one";
+/// Note on the largest pressure of bore nodes. It differed by 24 % between two meshes of housings of 2.4.2 whose
+/// displacements differ by 0.7 %.
+pub const PEAK_PRESSURE: &str = "from a single node; it can differ by tens of per cent between meshes whose displacements differ by 1 %";
 
-/// Fit, width and mesh; the bore's shape, and what it does to results where that is worth a word.
+/// Fit, width and mesh, the shape of the bore, and a caution if the shape affects results.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -39,7 +38,7 @@ pub fn seat_section(setup: &HousingSetup) -> Part {
     Ok(section)
 }
 
-/// What a reduced housing moves in, and what is cut off.
+/// Modes of a reduced housing, and the errors of truncation.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -74,7 +73,7 @@ pub fn reduced_section(cut_off: &CutOff, excitations: &[Excitation]) -> Part {
     Ok(section)
 }
 
-/// An equilibrium in a condensed housing.
+/// Equilibrium of a condensed housing.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -137,7 +136,7 @@ pub fn equilibrium_section(
     }))
 }
 
-/// What an equilibrium took.
+/// Effort of the solver for an equilibrium.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -149,7 +148,7 @@ pub fn solver_section(moment: &EquilibriumAt) -> Part {
     }))
 }
 
-/// How a housing takes part in a run.
+/// Method by which a run models its housings; `None` without a housing.
 pub(super) fn method(motion: &Motion) -> Option<&'static str> {
     match motion {
         Motion::Bearing(simulation) => {
@@ -161,7 +160,7 @@ pub(super) fn method(motion: &Motion) -> Option<&'static str> {
     }
 }
 
-/// Keys of a solid and of its seats begin with their names, where they have some.
+/// Time steps of a coupled run. Keys of a named solid or fit start with its name.
 pub(super) fn step(housed: &Exchange) -> Part {
     let bodies = &housed.simulation;
     let mut section = Map::new();

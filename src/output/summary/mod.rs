@@ -1,4 +1,4 @@
-//! `summary.json` of a run, with sections for what moves in it, and the tables beside it.
+//! `summary.json` of a run, with sections for its parts, and the tables.
 
 mod bearing;
 pub mod housing;
@@ -22,22 +22,22 @@ use std::path::{Path, PathBuf};
 
 type Part = Result<Value, ResultsError>;
 
-/// Peaks listed of each spectrum.
+/// Number of peaks listed for each spectrum.
 const PEAKS: usize = 8;
 
-/// What a summary needs beside the session and its table.
+/// Data of a summary in addition to the session and its table.
 #[derive(Clone, Debug, Default)]
 pub struct RunReport {
     pub record: RunRecord,
-    /// What ended the run before its end, if anything did.
+    /// Reason why the run stopped before its end; `None` if it did not.
     pub stopped_by: Option<String>,
-    /// How the steps were to be chosen, as the scene has it.
+    /// Step control as requested by the scene.
     pub stepping: Option<Stepping>,
     pub integrator: Option<Integrator>,
     pub solid_stepping: Option<SolidStepping>,
 }
 
-/// Writes `series.csv`, `series.npy`, `spectrum.csv` where there are spectra, and `summary.json`;
+/// Writes `series.csv`, `series.npy`, `spectrum.csv` if there are spectra, and `summary.json`;
 /// returns the files.
 ///
 /// # Errors
@@ -52,7 +52,7 @@ pub fn write_run_results(
     let summary = run_summary(session, table, spectra, report)?;
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
     match session.motion {
-        // Times of windows and equilibria are no sums of steps.
+        // These times are not sums of many steps, and need no rounding.
         Motion::Housed(_) | Motion::QuasiStaticSequence(_) | Motion::Rubber(_) => {
             table.series.write_csv(&csv)?
         }
@@ -70,7 +70,6 @@ pub fn write_run_results(
     Ok(written)
 }
 
-/// The table with the times of its rows as people write them.
 fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {
     let mut data = table.series.data().clone();
     for (row, time) in data.column_mut(0).iter_mut().enumerate() {
@@ -79,7 +78,7 @@ fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {
     Ok(Series::new(table.series.columns().to_vec(), data)?)
 }
 
-/// One row a bin: frequency, then the amplitude of each channel.
+/// One row per bin: frequency, then the amplitude of each channel.
 fn spectrum_series(
     table: &RunTable,
     spectra: &[(String, Spectrum)],
@@ -129,8 +128,8 @@ pub fn run_summary(
         Motion::Solid(moving) => solid::work(&moving.solid),
         Motion::Rubber(moving) => rubber::work(moving),
         Motion::Housed(housed) => housing::work(housed),
-        Motion::QuasiStaticSequence(course) => {
-            let effort = &course.effort;
+        Motion::QuasiStaticSequence(sequence) => {
+            let effort = &sequence.effort;
             let residual = quantity("residual", effort.largest_residual, "1")?;
             summary.insert("largest_unbalanced_part_of_load".into(), residual);
             json!({
@@ -151,7 +150,7 @@ pub fn run_summary(
     if let Some(step) = step {
         summary.insert("step".into(), step);
     }
-    // That of equilibria has energies held, and no ledger.
+    // A quasi-static sequence has energy columns, but no energy balance.
     if let Some(energy) =
         energy(session, table)?.filter(|_| !matches!(motion, Motion::QuasiStaticSequence(_)))
     {
@@ -162,7 +161,7 @@ pub fn run_summary(
     }
     summary.insert("final".into(), final_values(table)?);
     if table.window.is_empty() {
-        let note = "the run has not come to the window yet";
+        let note = "the run has not reached the window yet";
         summary.insert("window".into(), json!({ "rows": 0, "note": note }));
     } else {
         summary.insert("window".into(), window(table)?);
@@ -183,7 +182,7 @@ pub fn run_summary(
     Ok(Value::Object(summary))
 }
 
-/// Of the last row; of a solid by itself, that may have stopped between rows, its own.
+/// Time of the last row; of a single solid, which may stop between rows, the present time.
 fn time(session: &Session, table: &RunTable) -> f64 {
     if let Motion::Solid(moving) = &session.motion {
         return rounded(moving.solid.time);
@@ -205,7 +204,7 @@ fn output(session: &Session, table: &RunTable) -> Result<Value, ResultsError> {
     Ok(section)
 }
 
-/// The ledger at the last row: where the energy is, what went in and out, what is missing.
+/// Energy balance at the last row: energies, works and the residual.
 fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsError> {
     let Some(last) = table.series.data().nrows().checked_sub(1) else { return Ok(None) };
     let mut terms = Map::new();
@@ -220,7 +219,7 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
         return Ok(None);
     }
     if let Some(residuals) = table.all("energy_residual") {
-        // Of every look that was taken between rows too.
+        // Includes the checks between rows.
         let looked = session.motion.bearing().map_or(0.0, Simulation::largest_residual);
         let largest = residuals.iter().fold(looked, |largest, value| largest.max(value.abs()));
         terms.insert("largest_residual".into(), quantity("largest_residual", largest, "J")?);
@@ -239,7 +238,7 @@ fn energy(session: &Session, table: &RunTable) -> Result<Option<Value>, ResultsE
     Ok(Some(Value::Object(terms)))
 }
 
-/// The name of a column without that of the solid or seat it is of.
+/// Name of a column without the name of its solid, fit or bushing.
 fn unprefixed<'n>(column: &'n str, motion: &Motion) -> &'n str {
     let Motion::Housed(housed) = motion else { return column };
     let solids = housed.solids.iter().map(|part| &part.name);
@@ -290,11 +289,11 @@ fn window(table: &RunTable) -> Result<Value, ResultsError> {
     }))
 }
 
-/// Peaks of a sensor below this part of its largest reading are rounding.
+/// Peaks of a sensor below this fraction of its mean magnitude are rounding.
 const SENSOR_ROUNDING: f64 = 1e-9;
 
-/// Peaks of displacements below this, m, say nothing: 1e-4 of the highest of all of them; what error control lets pass in
-/// a single step.
+/// Displacement amplitude below which peaks are not significant, m: 1e-4 of the highest of all bodies, or the error that
+/// error control allows in a single step.
 fn spectral_floor(
     session: &Session,
     table: &RunTable,
@@ -323,7 +322,7 @@ fn spectra_section(
     let bin_width = spectra.first().map_or(0.0, |(_, spectrum)| spectrum.bin_width);
     for (name, spectrum) in spectra {
         let unit = table.unit(name);
-        // What a sensor reads is rounded by a part of what it reads on the mean.
+        // The rounding of a sensor is proportional to its mean magnitude.
         let magnitude =
             || table.windowed(name).into_iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
         let floor = if unit == "m" { floor } else { SENSOR_ROUNDING * magnitude() };

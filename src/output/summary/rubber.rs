@@ -1,4 +1,4 @@
-//! What a solid of rubber says of its relaxed equilibrium, vibrations and steps.
+//! Summary of a rubber solid: relaxed equilibrium, vibrations and time steps.
 
 use super::Part;
 use super::solid::{extremes, mesh_section, named, static_series, vector};
@@ -17,7 +17,7 @@ use crate::solids::rubber::vibration::Answer;
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 
-/// Mass by density and volume.
+/// Mass from density and volume.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -26,7 +26,7 @@ pub fn rubber_mass(setup: &RubberSetup, built: &BuiltMesh) -> Part {
     Ok(json!({ "of_volume": quantity("mass", mass, "kg")? }))
 }
 
-/// Summary and the one row of the series of a relaxed equilibrium under what supports and loads are at `t` (s).
+/// Summary and one-row series of a relaxed equilibrium under the supports and loads at time `t` (s).
 ///
 /// # Errors
 /// A value that is not finite.
@@ -70,7 +70,7 @@ pub fn rubber_statics(
     Ok((summary, series))
 }
 
-/// Equilibria on the way as a table: which part of what supports and loads ask for, and the columns of statics.
+/// Intermediate equilibria as a table: the fraction of supports and loads applied, and the columns of statics.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -90,7 +90,7 @@ pub fn reached_series(setup: &RubberSetup, reached: &[Reached]) -> Result<Series
     Series::new(columns, data)
 }
 
-/// Answers over frequency, for the summary.
+/// Frequency response for the summary.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -108,10 +108,10 @@ pub fn harmonic_section(set: &str, axis: &str, answers: &[Answer]) -> Part {
     Ok(json!({ "set": set, "axis": axis, "about": "rest, small", "answers": answers }))
 }
 
-/// The same as a table.
+/// Frequency response as a table.
 ///
 /// # Errors
-/// Never for answers that are finite.
+/// Never for finite answers.
 pub fn harmonic_series(answers: &[Answer]) -> Result<Series, SeriesError> {
     let columns = [
         ("frequency", "Hz"),
@@ -146,12 +146,12 @@ pub(super) fn step(moving: &MovingRubber) -> Part {
         Stepping::Fixed(step) => json!({
             "method": "implicit",
             "size": quantity("step", step, "s")?,
-            "chosen": "given, shorter up to rows and corners",
+            "chosen": "fixed, shortened at rows and at corners of loads and supports",
         }),
         Stepping::Accuracy(accuracy) => json!({
             "method": "implicit",
             "accuracy": quantity("accuracy", accuracy, "1")?,
-            "chosen": "by the estimated error of the stress, up to rows and corners",
+            "chosen": "by the estimated error of the stress, shortened at rows and at corners of loads and supports",
         }),
     })
 }

@@ -1,4 +1,4 @@
-//! What a solid says of its mesh, statics, modes and steps.
+//! Summary of a solid: mesh, statics, modes and time steps.
 
 use super::{PEAKS, Part, RunReport};
 use crate::assembly::plan::counts::Counts;
@@ -106,7 +106,7 @@ fn head(kind: &str, model: &SolidModel, built: &BuiltMesh, record: &RunRecord) -
     Ok(Value::Object(summary))
 }
 
-/// Largest displacement and von Mises stresses, with their places.
+/// Largest displacement and von Mises stresses, with their positions.
 pub(super) fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresses) -> Part {
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         let mut best = (0, 0.0);
@@ -136,7 +136,7 @@ pub(super) fn extremes(mesh: &TetMesh, displacement: &[Vec3], stresses: &Stresse
     }))
 }
 
-/// Mean displacements of probes, sums of reactions.
+/// Mean displacements of probes, and sums of reactions of supports.
 pub(super) fn named(
     of_probes: &[NamedNodes],
     of_supports: &[Support],
@@ -160,7 +160,7 @@ pub(super) fn named(
     Ok([Value::Object(probes), Value::Object(supports)])
 }
 
-/// Summary and the one row of the series of an equilibrium at t = 0.
+/// Summary and one-row series of an equilibrium at t = 0.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -217,7 +217,7 @@ pub(super) fn static_series(
     Series::new(columns, data)
 }
 
-/// Summary and the table of natural modes.
+/// Summary and table of natural modes.
 ///
 /// # Errors
 /// A value that is not finite.
@@ -286,7 +286,7 @@ pub(super) fn work(solid: &ExplicitSolid) -> Value {
     })
 }
 
-/// The mesh, and the largest displacement and stresses on it.
+/// Sections of the mesh and of the largest displacement and stresses.
 ///
 /// # Errors
 /// A value that is not finite.

@@ -1,13 +1,12 @@
-//! Warnings: a code that scripts and tests look at, and a text for people.
+//! Warnings: a code for scripts and tests, and a text for people.
 //!
-//! A warning exists only where an engineer would change something because of it. `docs/warnings.md` is made of [`TABLE`].
+//! A warning exists only if an engineer would change something because of it. `docs/warnings.md` is generated from [`TABLE`].
 
 pub mod solid;
 
 use serde::{Serialize, Serializer};
 use std::fmt;
 
-/// One warning of a command.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Warning {
     pub code: WarningCode,
@@ -19,7 +18,7 @@ impl Warning {
         Warning { code, text: text.into() }
     }
 
-    /// With the name of what it is about in front of its text, such as "bearing left: ".
+    /// The warning with its subject in front of the text, such as "bearing left: ".
     pub fn named(self, name: &str) -> Warning {
         Warning { text: format!("{name}{}", self.text), ..self }
     }
@@ -31,12 +30,11 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Warnings as lines of text.
 pub fn lines(warnings: &[Warning]) -> String {
     warnings.iter().map(|warning| format!("{warning}\n")).collect()
 }
 
-/// In the order of [`TABLE`]; the number is part of the code.
+/// Warning codes in the order of [`TABLE`]; the number is part of the code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WarningCode {
     IndeterminatePosition = 1,
@@ -59,12 +57,11 @@ pub enum WarningCode {
 }
 
 impl WarningCode {
-    /// Number in the code, from 1.
     pub fn number(self) -> usize {
         self as usize
     }
 
-    /// Such as `W07-rows-too-far-apart`.
+    /// Code such as `W07-rows-too-far-apart`.
     pub fn name(self) -> &'static str {
         TABLE[self.number() - 1].name
     }
@@ -76,7 +73,6 @@ impl Serialize for WarningCode {
     }
 }
 
-/// What a code stands for.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
     pub name: &'static str,
@@ -85,12 +81,11 @@ pub struct Entry {
     pub action: &'static str,
 }
 
-/// All codes, by number.
 pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W01-indeterminate-position",
         title: "Position not determined",
-        meaning: "Some directions of a body meet no stiffness, so its position in them is one of many. Frequencies and stiffnesses in these \
+        meaning: "A body is not constrained in some directions, so its position in them is not unique. Frequencies and stiffnesses in these \
                   directions are zero.",
         action: "Load or preload the bearing, add a spring, or prescribe these coordinates.",
     },
@@ -111,8 +106,8 @@ pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W04-contact-past-shoulder",
         title: "Contact ellipse past the shoulder",
-        meaning: "A contact ellipse extends past the edge of its groove. The model's groove has no edge, so the load there is overestimated \
-                  and the edge pressure is missing.",
+        meaning: "A contact ellipse extends past the edge of its groove. The groove of the model has no edge: the load there is overestimated, \
+                  and the edge pressure is not computed.",
         action: "Reduce load or tilt. If the shoulder height was estimated, give `shoulder_radius` of the race.",
     },
     Entry {
@@ -125,22 +120,22 @@ pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W06-centrifugal-force-left-out",
         title: "Centrifugal force of the balls left out",
-        meaning: "At this speed the centrifugal force of a ball is more than 5 % of the largest ball load, and the equilibrium leaves it out.",
+        meaning: "At this speed the centrifugal force of a ball is more than 5 % of the largest ball load, but the equilibrium does not include it.",
         action: "Write `ball_forces.centrifugal = true`.",
     },
     Entry {
         name: "W07-rows-too-far-apart",
         title: "Output interval too long for an excitation",
-        meaning: "Fewer than two rows of the table fall into a period of something that drives the scene. Means, amplitudes and spectra of \
+        meaning: "The table has fewer than two rows per period of an excitation. Means, amplitudes and spectra of \
                   the rows are aliased.",
-        action: "Shorten `numerics.output_interval`; eight rows a period are enough.",
+        action: "Shorten `numerics.output_interval`; eight rows per period are enough.",
     },
     Entry {
         name: "W08-mesh-too-coarse",
         title: "Mesh too coarse",
-        meaning: "By the jumps of stress between elements (Zienkiewicz and Zhu) displacements or frequencies may be off by more than 2 %. \
+        meaning: "Stress jumps between elements (Zienkiewicz and Zhu) indicate that displacements or frequencies may be off by more than 2 %. \
                   Stresses are less accurate than that.",
-        action: "Refine the mesh where stresses are high and where walls have fewer than three elements, or write `order = 2` for ten-node \
+        action: "Refine the mesh at high stresses and in walls with fewer than three elements, or write `order = 2` for ten-node \
                  elements.",
     },
     Entry {
@@ -153,14 +148,14 @@ pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W10-stress-above-elastic",
         title: "Stress outside the linear-elastic range",
-        meaning: "The von Mises stress exceeds 1 % of Young's modulus. No steel stays elastic there, and the linear law holds for small \
+        meaning: "The von Mises stress exceeds 1 % of Young's modulus. No steel stays elastic there, and the linear material law is valid for small \
                   strains only.",
         action: "Check loads, units and material.",
     },
     Entry {
         name: "W11-rubber-volume",
         title: "Volume of rubber changed by more than 10 %",
-        meaning: "The law of the elastomer holds for volume changes of a few per cent.",
+        meaning: "The material law of the elastomer is valid for volume changes of a few per cent.",
         action: "Check displacements, loads and the bulk modulus.",
     },
     Entry {
@@ -185,21 +180,21 @@ pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W15-excitation-faster-than-fit",
         title: "Excitation above the fitted frequencies of a bushing",
-        meaning: "Something drives the scene faster than the highest frequency to which the springs of a bushing are fitted. Above it their \
-                  stiffness no longer grows.",
+        meaning: "An excitation has a higher frequency than the highest one to which the springs of a bushing are fitted. Above it their \
+                  stiffness no longer increases.",
         action: "Raise `spring.NAME.bushing.fastest`.",
     },
     Entry {
         name: "W16-beyond-kept-modes",
         title: "Result beyond the kept modes",
-        meaning: "A reduced shaft or housing is used beyond what its modes represent: a frequency above the kept ones, or a load on the bore \
-                  larger than its static correction modes are made for.",
+        meaning: "A reduced shaft or housing is used beyond the range of its modes: a frequency above the kept ones, or a load on the bore \
+                  larger than that of its static correction modes.",
         action: "Keep more modes (`body.NAME.beam.below`, `housing.modes_to`), or raise `housing.press`.",
     },
     Entry {
         name: "W17-whirl-unstable",
         title: "Unstable whirl",
-        meaning: "A whirling motion has negative damping at the top speed and grows, usually by internal damping above a critical speed.",
+        meaning: "A whirl mode has negative damping at the top speed and grows, usually by internal damping above a critical speed.",
         action: "Reduce the speed or the internal damping, or add damping that does not rotate.",
     },
 ];

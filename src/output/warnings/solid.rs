@@ -1,4 +1,4 @@
-//! Warnings on a solid: a mesh that is too coarse, elements that lock, stresses and strains beyond the law of the material.
+//! Warnings on a solid: coarse mesh, locking elements, stresses and strains outside the range of the material law.
 
 use super::{Warning, WarningCode};
 use crate::ch2_housing::elastomer::eight_chain::ChainPull;
@@ -17,28 +17,28 @@ use crate::solids::rubber::model::RubberModel;
 use crate::solids::stress::nodal_stresses;
 use crate::solids::trust::{EnergyError, Placed, at_most, energy_error, largest_von_mises, size};
 
-/// Part of displacements or frequencies that a mesh may miss without a warning, by the upper end of the estimate ([`at_most`]).
+/// Relative error of displacements or frequencies without a warning; compared with the upper end of the estimate ([`at_most`]).
 const TOLERATED_ERROR: f64 = 0.02;
-/// Part of the surface with the thinnest walls beneath it, by which elements through a wall are counted.
-const THIN: f64 = 0.1;
-/// Elements through a wall that are too few.
-const FEW: f64 = 2.5;
-/// Poisson's ratio from which four-node elements lock whatever their number through a wall: at 0.45 the bulk
-/// modulus is ten times the shear modulus, and a mesh has about as many elements, each to keep
-/// its volume, as free components.
+/// Fraction of the surface with the thinnest walls, where elements through the wall are counted.
+const THIN_SURFACE_SHARE: f64 = 0.1;
+/// Number of elements through a wall below which a mesh is too coarse.
+const FEWEST_ELEMENTS: f64 = 2.5;
+/// Poisson's ratio above which four-node elements lock with any number of elements through a wall. At 0.45 the bulk
+/// modulus is ten times the shear modulus, and a mesh has about as many volume constraints (elements) as free
+/// components.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
-/// Von Mises stress over Young's modulus: the hardest bearing steel yields at 2 GPa, 1 % of its modulus, and
-/// beyond that a law that is linear in Green's strain is off by as much for rubber too.
+/// Limit of von Mises stress over Young's modulus. The hardest bearing steel yields at 2 GPa, 1 % of its modulus. Beyond
+/// this strain, a law linear in Green's strain is off by a similar amount for rubber too.
 const LARGEST_STRAIN: f64 = 0.01;
-/// A pressure of ten times C_R changes the volume by so much where the bulk modulus is a hundred times C_R.
+/// Relative volume change under a pressure of ten times C_R if the bulk modulus is a hundred times C_R.
 const LARGEST_VOLUME_CHANGE: f64 = 0.1;
-/// Part of its full length up to which a chain of five terms pulls as (2.7) has it within 10 %: 0.8 of it has 4.50 where
-/// the inverse Langevin function is 5.00.
+/// Fraction of its full length up to which the five-term chain force agrees with (2.7) within 10 %: at 0.8 it is 4.50,
+/// and the inverse Langevin function is 5.00.
 const LONGEST_CHAIN: f64 = 0.8;
-/// Contact nodes of a bore, below which the contact depends on the mesh: three and 24 of one bore had critical speeds 14 % apart.
+/// Number of contact nodes of a bore below which the contact depends on the mesh. With 3 and 24 nodes of one bore, critical speeds differed by 14 %.
 const FEW_CONTACT_NODES: usize = 40;
 
-/// A race that touches few nodes of its bore.
+/// Warning on a race in contact with few nodes of its bore.
 pub fn of_contact_nodes(bore: &BoreState) -> Option<Warning> {
     let (touching, all) = (bore.touching, bore.loads.len());
     (touching < FEW_CONTACT_NODES.min(all)).then(|| {
@@ -51,10 +51,10 @@ pub fn of_contact_nodes(bore: &BoreState) -> Option<Warning> {
     })
 }
 
-/// Warnings on a state of a solid of rubber.
+/// Warnings on a state of a rubber solid.
 ///
 /// # Errors
-/// An element turned inside out.
+/// An inverted element.
 pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Warning>, StepFailure> {
     let mut warnings = Vec::new();
     let [least, most] = volume_changes(model, displacement)?;
@@ -63,7 +63,7 @@ pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Warni
     if !is_rubber {
         let part = to_digits(1.0 + far, 3);
         let text = format!(
-            "the volume of rubber comes to {part} of its initial value, and its law holds for changes of a few per cent: check displacements, \
+            "the volume of rubber is {part} of its initial value, but its material law is valid for changes of a few per cent: check displacements, \
              loads and the bulk modulus"
         );
         warnings.push(Warning::new(WarningCode::RubberVolume, text));
@@ -72,7 +72,7 @@ pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Warni
     let within = chain <= LONGEST_CHAIN;
     if !within && model.problem.material.network.pull == ChainPull::FiveTerms {
         let text = format!(
-            "chains of the network come to {} of their full length, where five terms are more than 10 % too soft: compare with chain_pull = \
+            "chains of the network reach {} of their full length, where the five-term series is more than 10 % too soft: compare with chain_pull = \
              \"inverse-langevin\"",
             to_digits(chain, 3)
         );
@@ -81,7 +81,6 @@ pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Warni
     Ok(warnings)
 }
 
-/// Warnings on an equilibrium.
 pub fn of_equilibrium(
     model: &SolidModel,
     displacement: &[Vec3],
@@ -93,13 +92,13 @@ pub fn of_equilibrium(
     of_mesh.into_iter().chain(of_stress(model, &stress, None)).collect()
 }
 
-/// Warnings on a moving solid, from the last state of its `stresses`.
+/// Warnings on a moving solid, from its present stresses.
 pub fn of_motion(model: &SolidModel, stresses: &Stresses) -> Vec<Warning> {
     let stress = largest_von_mises(model, &stresses.cell);
     of_locking(model).into_iter().chain(of_stress(model, &stress, None)).collect()
 }
 
-/// Warnings on the run of a solid by itself, from all its rows.
+/// Warnings on the run of a single solid, from all its rows.
 pub fn of_run(session: &Session, model: &SolidModel, stresses: &Stresses) -> Vec<Warning> {
     let recorder = &session.recorder;
     let column = recorder.columns().iter().position(|column| column.name == "largest_von_mises");
@@ -115,23 +114,23 @@ pub fn of_run(session: &Session, model: &SolidModel, stresses: &Stresses) -> Vec
     of_locking(model).into_iter().chain(of_stress(model, &stress, when)).collect()
 }
 
-/// Warnings on natural modes, from the stresses of the lowest one that is no rigid motion.
+/// Warnings on natural modes, from the stresses of the lowest mode that is not a rigid-body mode.
 pub fn of_modes(model: &SolidModel, found: &Modes) -> Vec<Warning> {
     if let Some(warning) = of_locking(model) {
         return vec![warning];
     }
     let highest = found.modes.last().map_or(0.0, |mode| mode.frequency);
-    // Rigid motions have what rounding leaves of zero.
+    // The frequencies of rigid-body modes are zero except for rounding.
     let Some(lowest) = found.modes.iter().find(|mode| mode.frequency > 1e-3 * highest) else {
         return Vec::new();
     };
-    // So small that strains are linear.
+    // Scaled to small amplitude, so that strains are linear.
     let most = lowest.shape.iter().map(|u| norm(*u)).fold(0.0, f64::max);
     let small = 1e-6 * size(model) / most;
     let shape: Vec<Vec3> = lowest.shape.iter().map(|u| scale(*u, small)).collect();
     let error = energy_error(model, &shape, &nodal_stresses(model, &shape));
     let (factor, walls) = upper_end(model, &error);
-    // A frequency goes with the root of the energy.
+    // A frequency is proportional to the square root of the energy.
     let part = (1.0 - error.expected(factor)).sqrt().recip() - 1.0;
     let fine = part <= TOLERATED_ERROR;
     let text = || {
@@ -144,7 +143,6 @@ pub fn of_modes(model: &SolidModel, found: &Modes) -> Vec<Warning> {
     (!fine).then(|| Warning::new(WarningCode::MeshTooCoarse, text())).into_iter().collect()
 }
 
-/// Displacements that the mesh makes too small.
 fn of_mesh(model: &SolidModel, error: &EnergyError) -> Option<Warning> {
     let (factor, walls) = upper_end(model, error);
     let part = error.expected(factor);
@@ -159,14 +157,18 @@ fn of_mesh(model: &SolidModel, error: &EnergyError) -> Option<Warning> {
     })
 }
 
-/// The truth over the estimate at most, and where walls have few elements through them.
+/// Upper limit of the ratio of true to estimated error, and a text on walls with few elements through them.
 fn upper_end(model: &SolidModel, error: &EnergyError) -> (f64, String) {
     let elements = &model.problem.elements;
-    // What misses next to nothing needs no walk through the mesh.
+    // A small error needs no search for thin walls.
     let sound = error.part() <= 0.1 * TOLERATED_ERROR;
-    let wall = if sound { None } else { thinnest_wall(&model.problem.nodes, elements, THIN) };
+    let wall = if sound {
+        None
+    } else {
+        thinnest_wall(&model.problem.nodes, elements, THIN_SURFACE_SHARE)
+    };
     let through = wall.map_or(f64::INFINITY, |wall| wall.elements);
-    let walls = wall.filter(|wall| wall.elements < FEW).map_or(String::new(), |wall| {
+    let walls = wall.filter(|wall| wall.elements < FEWEST_ELEMENTS).map_or(String::new(), |wall| {
         let count = to_digits(wall.elements, 2);
         let noun = if count == 1.0 { "element" } else { "elements" };
         let thickness = to_digits(1e3 * wall.thickness, 4);
@@ -175,7 +177,6 @@ fn upper_end(model: &SolidModel, error: &EnergyError) -> (f64, String) {
     (at_most(elements.order(), through), walls)
 }
 
-/// What to do about a mesh that is too coarse.
 fn refinement(model: &SolidModel) -> &'static str {
     match model.problem.elements.order() {
         Order::Linear => "write order = 2 in [solid.mesh], or give more cells through the walls",
@@ -183,7 +184,6 @@ fn refinement(model: &SolidModel) -> &'static str {
     }
 }
 
-/// Four-node elements near incompressibility.
 fn of_locking(model: &SolidModel) -> Option<Warning> {
     let poisson = model.problem.material.poisson_ratio();
     let locks = model.problem.elements.order() == Order::Linear && poisson >= NEARLY_INCOMPRESSIBLE;
@@ -197,7 +197,7 @@ fn of_locking(model: &SolidModel) -> Option<Warning> {
     })
 }
 
-/// Stress that the linear law does not hold for, at a time or where it is.
+/// Warning on a stress outside the linear range, with its time or position.
 fn of_stress(model: &SolidModel, stress: &Placed, time: Option<f64>) -> Option<Warning> {
     let strain = stress.value / model.problem.material.youngs_modulus();
     let elastic = strain <= LARGEST_STRAIN;

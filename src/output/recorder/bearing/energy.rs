@@ -1,4 +1,4 @@
-//! Columns of the energy and of the ledger of what moves.
+//! Columns of the energies and works of a multibody simulation.
 
 use crate::assembly::lists::{Assembly, BallMeeting, Bearing};
 use crate::assembly::state::Ledger;
@@ -6,7 +6,7 @@ use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::motion::simulation::Snapshot;
 
-/// Parts of the energy and of the ledger that a problem can have any of.
+/// Terms of the energy balance that a problem can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Term {
     Kinetic,
@@ -24,7 +24,7 @@ pub(super) enum Term {
     Residual,
 }
 
-/// What can differ from zero in this problem.
+/// Terms that can differ from zero in this problem.
 pub(super) fn terms(assembly: &Assembly) -> Vec<Term> {
     let any = |of: &dyn Fn(&Bearing) -> bool| assembly.bearings.iter().any(of);
     let cage = any(&|bearing| bearing.cage.is_some());
@@ -34,9 +34,9 @@ pub(super) fn terms(assembly: &Assembly) -> Vec<Term> {
     let mut driven = assembly.bodies.iter().filter_map(|body| body.driven());
     let on_foundation = driven
         .any(|body| body.foundation_stiffness != [0.0; 5] || body.foundation_damping != [0.0; 5]);
-    // Springs and dashpots between bodies are booked with those to the ground.
+    // Springs and dashpots between bodies are included in the foundation terms.
     let on_foundation = on_foundation || !assembly.connections.is_empty();
-    // With them the damping of solids.
+    // The damping of solids is included in the foundation work.
     let solids = !assembly.solids.is_empty();
     let bends = !assembly.shafts.is_empty();
     let terms = [

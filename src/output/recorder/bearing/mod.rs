@@ -1,4 +1,4 @@
-//! Columns of a bearing in motion.
+//! Columns of bearings in a transient run.
 
 mod energy;
 
@@ -23,14 +23,14 @@ use energy::{Term, energy_term, term_name, terms};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// What is recorded of a bearing.
+/// Recorded channel groups and energy terms of the bearings.
 pub(super) struct BearingColumns {
     groups: Vec<ChannelGroup>,
     terms: Vec<Term>,
 }
 
 impl BearingColumns {
-    /// The groups that the plan records.
+    /// Adds the columns of the groups that the plan records.
     pub fn new(
         assembly: &Assembly,
         asked: &[ChannelGroup],
@@ -54,7 +54,7 @@ impl BearingColumns {
 }
 
 impl Recorder {
-    /// Adds a row; call with the simulation's own snapshot of the present time.
+    /// Adds a row; `snapshot` must be the simulation's snapshot of the present time.
     pub fn record(&mut self, simulation: &Simulation, snapshot: &Snapshot) {
         let at = self.values.len();
         let before = at.checked_sub(self.columns.len());
@@ -105,7 +105,7 @@ impl Recorder {
         self.bearing = Some(BearingColumns { groups, terms });
     }
 
-    /// What one bearing has for a group.
+    /// Adds the values of one bearing for a group.
     fn bearing(
         &mut self,
         group: ChannelGroup,
@@ -152,7 +152,7 @@ impl Recorder {
         }
     }
 
-    /// A race, X from `place` on (m), where its bearing sits, [`facing`] this way.
+    /// Adds the values of a race: x relative to `place` (m), the position of its bearing; `facing` from [`facing`].
     fn race(&mut self, now: &BodyKinematics, place: f64, facing: f64) {
         let [x, y, z] = now.state.position;
         let axis = scale(now.motion.axis, facing);
@@ -178,7 +178,7 @@ impl Recorder {
         let [x, y, z] = now.motion.position;
         self.values.extend([x - place, y, z]);
         self.values.extend(tilts_of(axis).map(f64::to_degrees));
-        self.turned(libm::atan2(own_y.z, own_y.y), speed, before, row);
+        self.push_unwrapped(libm::atan2(own_y.z, own_y.y), speed, before, row);
         self.values.push(speed);
         if caged.contacts.guidance != Guidance::Balls {
             self.values.push(set.guides[0].normal_load + set.guides[1].normal_load);
@@ -200,7 +200,7 @@ impl Recorder {
             let [_, y, z] = sub(vector(POSITION), outer.position);
             let [_, v, w] = sub(vector(VELOCITY), outer.velocity);
             let speed = (y * w - z * v) / (y * y + z * z);
-            self.turned(libm::atan2(z, y), speed, before, row);
+            self.push_unwrapped(libm::atan2(z, y), speed, before, row);
             self.values.push(speed);
         }
         for side in 0..2 {
@@ -208,9 +208,9 @@ impl Recorder {
         }
     }
 
-    /// Pushes an angle in degrees with all its turns: of the angles that differ by whole turns the
-    /// one closest to where the speed (in the next column) leads from the row before.
-    fn turned(&mut self, wrapped: f64, speed: f64, before: Option<usize>, row: usize) {
+    /// Adds an unwrapped angle in degrees: of the angles that differ by whole turns, the one closest to the prediction from the
+    /// row before and the mean speed (the speed is in the next column).
+    fn push_unwrapped(&mut self, wrapped: f64, speed: f64, before: Option<usize>, row: usize) {
         let column = self.values.len() - row;
         let angle = match before {
             None => wrapped,
@@ -231,7 +231,7 @@ impl Recorder {
             for (side, race) in races.iter().enumerate() {
                 let pair = side * layout.padded + ball;
                 let mut here = Sliding::default();
-                // Nothing slides where nothing touches.
+                // Without contact there is no sliding.
                 if table.load[pair] > 0.0 {
                     let vector = |component| layout.ball_vector(&simulation.state, component, ball);
                     let contact = &table.contact[pair];
@@ -259,13 +259,13 @@ impl Recorder {
     }
 }
 
-/// 1, or −1 for what is put in the other way round: half a turn about Z points its X and Y to the other side.
+/// 1, or −1 for a reversed bearing: half a turn about Z reverses its X and Y.
 fn facing(mount: &Mount) -> f64 {
     if mount.reversed { -1.0 } else { 1.0 }
 }
 
-/// Mean contact angle on one race, rad, each ball by its load; the nominal one where nothing touches.
-/// Positive where the inner race is pushed towards the bearing's own +X.
+/// Mean contact angle on one race weighted by ball load, rad; the nominal one without contact.
+/// Positive if the inner race is pushed towards the bearing's own +X.
 fn contact_angle(set: &BallSet, bearing: &Bearing, side: usize) -> f64 {
     let table = &set.table;
     let sign = if side == 0 { -1.0 } else { 1.0 };
@@ -316,7 +316,7 @@ fn add_columns(
     }
 }
 
-/// Of sections of bodies that bend.
+/// Columns of the watched sections of flexible shafts.
 pub(super) fn watched_columns(assembly: &Assembly) -> Vec<Column> {
     let of_shaft = |shaft: &ElasticShaft| {
         let label = assembly.bodies[shaft.body].label.as_deref().unwrap_or("shaft");
@@ -327,7 +327,7 @@ pub(super) fn watched_columns(assembly: &Assembly) -> Vec<Column> {
     assembly.shafts.iter().flat_map(of_shaft).collect()
 }
 
-/// Load on the second body of a connection with this label.
+/// Columns of the load on the second body of the connection with this label.
 pub(super) fn connection_columns(label: &str) -> impl Iterator<Item = Column> {
     let of = |what: &str, axis| format!("{label}_{what}_{axis}");
     let forces = AXES.map(|axis| Column::new(of("force", axis), "N"));

@@ -1,4 +1,4 @@
-//! Columns of equilibria one after the other: races, bodies, loads and seats.
+//! Columns of a quasi-static sequence: races, bodies, loads and housing fits.
 
 use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
@@ -6,7 +6,7 @@ use crate::assembly::mount::Mount;
 use crate::equilibrium::quasi_static_sequence::{QuasiStaticProblem, QuasiStaticSequence};
 use crate::output::series::Column;
 
-/// Of the bearings, the bodies besides them, and the housings; with the loads of balls or without.
+/// Columns of bearings, other bodies and housings, with or without the ball loads.
 pub(super) fn columns(problem: &QuasiStaticProblem, with_loads: bool) -> Vec<Column> {
     let bearings = &problem.assembly.bearings;
     let mut columns = Vec::new();
@@ -49,32 +49,32 @@ pub(super) fn columns(problem: &QuasiStaticProblem, with_loads: bool) -> Vec<Col
 
 const RACES: [&str; 2] = ["inner", "outer"];
 
-/// Bearings and sides of the races that may move.
+/// Bearing and side of the races that may move.
 fn moving_races(problem: &QuasiStaticProblem) -> Vec<(usize, usize)> {
     let all = (0..problem.assembly.bearings.len()).flat_map(|bearing| [(bearing, 0), (bearing, 1)]);
     all.filter(|(bearing, side)| problem.moves(*bearing, *side)).collect()
 }
 
-/// Tilts in degrees.
-fn place([x, y, z, tilt_y, tilt_z]: [f64; 5]) -> [f64; 5] {
+/// Coordinates with tilts in degrees.
+fn in_degrees([x, y, z, tilt_y, tilt_z]: [f64; 5]) -> [f64; 5] {
     [x, y, z, tilt_y.to_degrees(), tilt_z.to_degrees()]
 }
 
 impl Recorder {
     /// Adds a row of the latest equilibrium, in the order of [`columns`].
-    pub(in crate::output) fn record_equilibrium(&mut self, course: &QuasiStaticSequence) {
-        let (Some(moment), problem) = (&course.latest, &course.problem) else { return };
+    pub(in crate::output) fn record_equilibrium(&mut self, sequence: &QuasiStaticSequence) {
+        let (Some(moment), problem) = (&sequence.latest, &sequence.problem) else { return };
         let found = &moment.solution;
         let full = self.values.len() + self.columns.len();
         self.values.push(moment.time);
         for (bearing, side) in moving_races(problem) {
-            self.values.extend(place(problem.race(found, bearing, side)));
+            self.values.extend(in_degrees(problem.race(found, bearing, side)));
         }
         for (index, body) in problem.assembly.bodies.iter().enumerate() {
             if body.label.is_some() {
                 let mut at = found.place(&problem.assembly, index);
                 at[0] -= problem.assembly.origin_of(index);
-                self.values.extend(place(at));
+                self.values.extend(in_degrees(at));
             }
         }
         for (index, shaft) in problem.assembly.shafts.iter().enumerate() {
@@ -93,7 +93,7 @@ impl Recorder {
         for state in &found.seats {
             self.values.extend([state.elastic_energy, state.contact_energy]);
         }
-        // As far as the loads of balls are recorded.
+        // Only as many ball loads as there are columns for.
         let loads = found.bearings.iter().flat_map(|bearing| &bearing.balls);
         let loads = loads.flat_map(|ball| [ball.inner.normal_load, ball.outer.normal_load]);
         self.values.extend(loads.take(full - self.values.len()));
