@@ -106,7 +106,7 @@ fn faults_of_beams_say_what_is_wrong() {
         ),
         (
             beam(&format!("{whole}load = [{{ at = \"-20\", z = \"1 N\" }}]")),
-            "Hint: write \"-20 mm\"",
+            "Hint: write for instance \"-20 mm\"",
         ),
         (
             beam(&format!(
