@@ -27,10 +27,10 @@ const METHODS: &[&str] = &["reduced", "explicit", "implicit"];
 const WITH_BUSHING: Need = Depends("required with `[spring.NAME.bushing]`");
 const FREE: Need = Depends("neither key: the coordinate is free and unloaded");
 const ALL_THREE: Need = Depends("all three, required for a run and with gravity");
-const NONE: Need = Default { value: "0 N/m", reason: "no spring" };
-const NO_TURN: Need = Default { value: "0 N m/rad", reason: "no spring" };
+const NO_SPRING: Need = Default { value: "0 N/m", reason: "no spring" };
+const NO_ROTATIONAL_SPRING: Need = Default { value: "0 N m/rad", reason: "no spring" };
 const NO_DASHPOT: Need = Default { value: "0 N s/m", reason: "no dashpot" };
-const NO_TURN_DASHPOT: Need = Default { value: "0 N m s/rad", reason: "no dashpot" };
+const NO_ROTATIONAL_DASHPOT: Need = Default { value: "0 N m s/rad", reason: "no dashpot" };
 
 /// In the order of the reference.
 #[rustfmt::skip]
@@ -59,32 +59,32 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("body.rotating_load.speed", SPIN, Depends("required with the table"), "Rotation speed of the force about X, positive from +Y towards +Z.").example_of("50 rpm"),
     Key::new("body.rotating_load.phase", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), Default { value: "0 deg", reason: "the force starts along +Y" }, "Direction of the force at t = 0, from +Y towards +Z."),
     Key::new("body.unbalance", Kind::Quantity(Unbalance, closed(0.0, 1e6, "kg m")), Optional, "Unbalance, mass times eccentricity, at the body's centre; rotates with the body.").hint("mass times eccentricity; 100 N at 1000 rpm is 9.12e-3 kg m"),
-    Key::new("body.foundation.stiffness.x", FOUNDATION, NONE, "Stiffness along X.").hint(FOUNDATION_HINT),
-    Key::new("body.foundation.stiffness.y", FOUNDATION, NONE, "Stiffness along Y.").hint(FOUNDATION_HINT),
-    Key::new("body.foundation.stiffness.z", FOUNDATION, NONE, "Stiffness along Z.").hint(FOUNDATION_HINT),
-    Key::new("body.foundation.stiffness.tilt_y", TILT_FOUNDATION, NO_TURN, "Tilt stiffness about Y.").hint(FOUNDATION_HINT),
-    Key::new("body.foundation.stiffness.tilt_z", TILT_FOUNDATION, NO_TURN, "Tilt stiffness about Z.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.x", FOUNDATION, NO_SPRING, "Stiffness along X.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.y", FOUNDATION, NO_SPRING, "Stiffness along Y.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.z", FOUNDATION, NO_SPRING, "Stiffness along Z.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.tilt_y", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Tilt stiffness about Y.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.stiffness.tilt_z", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Tilt stiffness about Z.").hint(FOUNDATION_HINT),
     Key::new("body.foundation.damping.x", DASHPOT, NO_DASHPOT, "Damping along X.").hint(FOUNDATION_HINT),
     Key::new("body.foundation.damping.y", DASHPOT, NO_DASHPOT, "Damping along Y.").hint(FOUNDATION_HINT),
     Key::new("body.foundation.damping.z", DASHPOT, NO_DASHPOT, "Damping along Z.").hint(FOUNDATION_HINT),
-    Key::new("body.foundation.damping.tilt_y", TILT_DASHPOT, NO_TURN_DASHPOT, "Tilt damping about Y.").hint(FOUNDATION_HINT),
-    Key::new("body.foundation.damping.tilt_z", TILT_DASHPOT, NO_TURN_DASHPOT, "Tilt damping about Z.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.damping.tilt_y", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Tilt damping about Y.").hint(FOUNDATION_HINT),
+    Key::new("body.foundation.damping.tilt_z", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Tilt damping about Z.").hint(FOUNDATION_HINT),
     Key::new("spring.from", Kind::Text, Required, "First body: `shaft` for `[body.shaft]`, a race that is a body of its own (`outer_race`, `left.outer_race`), or `ground`. The spring acts along this body's axes, which rotate with it. Use `ground` here for a support of a rotating shaft."),
     Key::new("spring.to", Kind::Text, Default { value: "ground", reason: "the fixed frame" }, "Second body, as for `from`. The spring's force and moment on it are columns of a run (`forces`)."),
     Key::new("spring.from_at", PLACE, Default { value: "0 mm", reason: "at the centre of the body" }, "Attachment point on `from`: distance from the centre of the body or race along its axis. On the ground: position along X, by default that of the race if the spring ends at one.").hint(PLACE_HINT).example_of("100 mm"),
     Key::new("spring.to_at", PLACE, Depends("the same point as `from_at`"), "Attachment point on `to`, measured like `from_at`.").hint(PLACE_HINT).example_of("100 mm"),
-    Key::new("spring.stiffness.x", FOUNDATION, NONE, "Stiffness along X of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.stiffness.y", FOUNDATION, NONE, "Stiffness along Y of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.stiffness.z", FOUNDATION, NONE, "Stiffness along Z of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.stiffness.turn_x", TILT_FOUNDATION, NO_TURN, "Rotational stiffness about X of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.stiffness.turn_y", TILT_FOUNDATION, NO_TURN, "Rotational stiffness about Y of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.stiffness.turn_z", TILT_FOUNDATION, NO_TURN, "Rotational stiffness about Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.x", FOUNDATION, NO_SPRING, "Stiffness along X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.y", FOUNDATION, NO_SPRING, "Stiffness along Y of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.z", FOUNDATION, NO_SPRING, "Stiffness along Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.turn_x", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.turn_y", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about Y of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.turn_z", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about Z of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.x", DASHPOT, NO_DASHPOT, "Damping along X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.y", DASHPOT, NO_DASHPOT, "Damping along Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.z", DASHPOT, NO_DASHPOT, "Damping along Z of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.damping.turn_x", TILT_DASHPOT, NO_TURN_DASHPOT, "Rotational damping about X of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.damping.turn_y", TILT_DASHPOT, NO_TURN_DASHPOT, "Rotational damping about Y of the first body.").hint(FOUNDATION_HINT),
-    Key::new("spring.damping.turn_z", TILT_DASHPOT, NO_TURN_DASHPOT, "Rotational damping about Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.turn_x", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Rotational damping about X of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.turn_y", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Rotational damping about Y of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.turn_z", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Rotational damping about Z of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.bushing.inner_diameter", SIZE, WITH_BUSHING, "Inner diameter of the rubber.").hint(SIZE_HINT).example_of("71 mm"),
     Key::new("spring.bushing.outer_diameter", SIZE, WITH_BUSHING, "Outer diameter of the rubber.").hint(SIZE_HINT).example_of("91 mm"),
     Key::new("spring.bushing.length", SIZE, WITH_BUSHING, "Length of the rubber along X.").hint(SIZE_HINT).example_of("20 mm"),
@@ -104,12 +104,12 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("spring.bushing.maxwell.gamma", Kind::Number(above(0.0, 1e6, "")), Required, "Stiffness of the Maxwell element divided by that of the network."),
     Key::new("spring.bushing.maxwell.relaxation_time", Kind::Quantity(Time, above(0.0, 1e9, "s")), Required, "Relaxation time: the stress falls to 1/e at constant strain.").hint("rubber has 1 us to 100 s; check the unit").example_of("10 s"),
     Key::new("spring.maxwell.relaxation_time", Kind::Quantity(Time, above(0.0, 1e9, "s")), Required, "Relaxation time: the force falls to 1/e at constant displacement.").hint("rubber has 1 us to 100 s; check the unit").example_of("10 ms"),
-    Key::new("spring.maxwell.x", FOUNDATION, NONE, "Instantaneous stiffness along X of the first body.").hint(FOUNDATION_HINT).example_of("2e6 N/m"),
-    Key::new("spring.maxwell.y", FOUNDATION, NONE, "Instantaneous stiffness along Y.").hint(FOUNDATION_HINT),
-    Key::new("spring.maxwell.z", FOUNDATION, NONE, "Instantaneous stiffness along Z.").hint(FOUNDATION_HINT),
-    Key::new("spring.maxwell.turn_x", TILT_FOUNDATION, NO_TURN, "Instantaneous rotational stiffness about X.").hint(FOUNDATION_HINT),
-    Key::new("spring.maxwell.turn_y", TILT_FOUNDATION, NO_TURN, "Instantaneous rotational stiffness about Y.").hint(FOUNDATION_HINT),
-    Key::new("spring.maxwell.turn_z", TILT_FOUNDATION, NO_TURN, "Instantaneous rotational stiffness about Z.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.x", FOUNDATION, NO_SPRING, "Instantaneous stiffness along X of the first body.").hint(FOUNDATION_HINT).example_of("2e6 N/m"),
+    Key::new("spring.maxwell.y", FOUNDATION, NO_SPRING, "Instantaneous stiffness along Y.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.z", FOUNDATION, NO_SPRING, "Instantaneous stiffness along Z.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.turn_x", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Instantaneous rotational stiffness about X.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.turn_y", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Instantaneous rotational stiffness about Y.").hint(FOUNDATION_HINT),
+    Key::new("spring.maxwell.turn_z", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Instantaneous rotational stiffness about Z.").hint(FOUNDATION_HINT),
 ];
 
 const CONDITION: &str = "x = { load = \"250 N\" } or { displacement = \"3 um\" }";

@@ -8,11 +8,11 @@ use Need::{Default, Depends, Required};
 pub(crate) const SENSORS: &[&str] = &["accelerometer", "telemeter"];
 pub(crate) const DIRECTIONS: &[&str] = &["radial", "tangential", "axial"];
 
-const TURN: Kind = Kind::Quantity(Angle, closed(-360.0, 360.0, "deg"));
-const ASIDE: Kind = Kind::Quantity(Length, closed(0.0, 100.0, "mm"));
-const OUTWARDS: Kind = Kind::Quantity(Length, closed(0.0, 10.0, "m"));
+const AZIMUTH: Kind = Kind::Quantity(Angle, closed(-360.0, 360.0, "deg"));
+const ECCENTRICITY: Kind = Kind::Quantity(Length, closed(0.0, 100.0, "mm"));
+const RADIUS: Kind = Kind::Quantity(Length, closed(0.0, 10.0, "m"));
 const LOOP: Kind = Kind::Quantity(Length, closed(1.0, 1000.0, "mm"));
-const NONE: Need = Default { value: "0 mm", reason: "centred" };
+const CENTRED: Need = Default { value: "0 mm", reason: "centred" };
 const FROM_Y: Need = Default { value: "0 deg", reason: "towards +Y" };
 
 /// In the order of the reference.
@@ -21,15 +21,15 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("sensor.kind", Kind::Choice(SENSORS), Required, "`accelerometer` on a rigid body, `telemeter` on a bearing's cage."),
     Key::new("sensor.on", Kind::Text, Depends("required for an accelerometer"), "Body on which the accelerometer is mounted: `shaft` for `[body.shaft]`, a moving race that is a body of its own (`inner_race`), or `cage`; with named bearings `left.outer_race`. The sensor rotates with the body."),
     Key::new("sensor.at", PLACE, Default { value: "0 mm", reason: "at the centre of the body" }, "Axial position of an accelerometer, measured from the body's centre.").hint(PLACE_HINT).example_of("30 mm"),
-    Key::new("sensor.radius", OUTWARDS, Default { value: "0 mm", reason: "on the axis" }, "Radial position of an accelerometer, measured from the body's axis.").hint("a distance; check the unit").example_of("45 mm"),
-    Key::new("sensor.angle", TURN, FROM_Y, "Azimuth of an accelerometer at t = 0, from the scene's +Y towards +Z, also on the cage of a reversed bearing.").example_of("90 deg"),
+    Key::new("sensor.radius", RADIUS, Default { value: "0 mm", reason: "on the axis" }, "Radial position of an accelerometer, measured from the body's axis.").hint("a distance; check the unit").example_of("45 mm"),
+    Key::new("sensor.angle", AZIMUTH, FROM_Y, "Azimuth of an accelerometer at t = 0, from the scene's +Y towards +Z, also on the cage of a reversed bearing.").example_of("90 deg"),
     Key::new("sensor.direction", Kind::Choice(DIRECTIONS), Default { value: "radial", reason: "outwards, along `angle`" }, "Measured direction of an accelerometer: radially outwards along `angle`, tangential from +Y towards +Z, or axial."),
     Key::new("sensor.bearing", Kind::Text, Depends("the only bearing; required with several"), "Bearing on whose cage a telemeter is mounted."),
     Key::new("sensor.distance", Kind::Quantity(Length, above(0.0, 100.0, "mm")), Default { value: "3 mm", reason: "5.2.1 of the source" }, "Axial distance between the loop on the cage and the transceiver's loop. The transceiver is on the bearing's own +X side and moves with the outer race, but does not rotate about its axis.").hint("the source's tests have 1.78 to 5 mm"),
-    Key::new("sensor.offset", ASIDE, NONE, "Distance of the transceiver's centre from the outer race's axis. Without an offset the signal depends on the cage's displacement only to second order.").hint("the source's tests have 0 to 20 mm").example_of("1.27 mm"),
-    Key::new("sensor.offset_angle", TURN, FROM_Y, "Direction of `offset`, from +Y towards +Z."),
-    Key::new("sensor.runout", ASIDE, NONE, "Eccentricity of the loop on the cage. Together with `offset` it makes the cage's rotation visible in the signal.").hint("mounting error of the loop; some tenths of a millimetre").example_of("0.1 mm"),
-    Key::new("sensor.runout_angle", TURN, FROM_Y, "Direction of `runout` at t = 0, from +Y towards +Z; it rotates with the cage."),
+    Key::new("sensor.offset", ECCENTRICITY, CENTRED, "Distance of the transceiver's centre from the outer race's axis. Without an offset the signal depends on the cage's radial displacement only to second order.").hint("the source's tests have 0 to 20 mm").example_of("1.27 mm"),
+    Key::new("sensor.offset_angle", AZIMUTH, FROM_Y, "Direction of `offset`, from +Y towards +Z."),
+    Key::new("sensor.runout", ECCENTRICITY, CENTRED, "Eccentricity of the loop on the cage. Together with `offset` it makes the cage's rotation visible in the signal.").hint("mounting error of the loop; some tenths of a millimetre").example_of("0.1 mm"),
+    Key::new("sensor.runout_angle", AZIMUTH, FROM_Y, "Direction of `runout` at t = 0, from +Y towards +Z; it rotates with the cage."),
     Key::new("sensor.loop_radius", LOOP, Depends("the cage's mean radius"), "Radius of the loop on the cage.").hint("about the cage's radius").example_of("31.25 mm"),
     Key::new("sensor.transceiver_radius", LOOP, Depends("`loop_radius`"), "Radius of the transceiver's loop.").hint("about the cage's radius").example_of("31.25 mm"),
     Key::new("sensor.wire_radius", Kind::Quantity(Length, closed(1.0, 1000.0, "um")), Default { value: "0.15 mm", reason: "the source states none" }, "Radius of the wire of both loops.").hint("a thin wire: 0.05 to 0.5 mm"),

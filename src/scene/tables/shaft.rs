@@ -22,12 +22,12 @@ const BORE: Kind = Kind::Quantity(
 );
 const POISSON: Kind =
     Kind::Number(Range { low: 0.0, high: 0.5, low_included: true, high_included: false, unit: "" });
-const BRAKE: Kind = Kind::Quantity(Rate, closed(0.0, 1e9, "1/s"));
+const DAMPING: Kind = Kind::Quantity(Rate, closed(0.0, 1e9, "1/s"));
 const AROUND: Kind = Kind::Integer { low: 8, high: 1000 };
 const MESH_METHODS: &[&str] = &["reduced", "explicit"];
 const RADIAL: Kind = Kind::Integer { low: 1, high: 100 };
-const OF_DISC: Need = Depends("0 with `mass`");
-const OF_RING: Need = Depends("give `outer_diameter` and `width`, or `mass`");
+const WITH_MASS: Need = Depends("0 with `mass`");
+const SIZE_OR_MASS: Need = Depends("give `outer_diameter` and `width`, or `mass`");
 
 /// In the order of the reference.
 #[rustfmt::skip]
@@ -37,9 +37,9 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("body.beam.poisson_ratio", POISSON, Default { value: "0.3", reason: "steel" }, "Poisson's ratio, for the shear stiffness."),
     Key::new("body.beam.density", DENSITY, STEEL_DENSITY, "Density of segments, and of discs given by their dimensions.").hint(DENSITY_HINT),
     Key::new("body.beam.below", Kind::Quantity(Frequency, closed(0.0, 1e7, "Hz")), Default { value: "5 kHz", reason: "far above the speed of a shaft" }, "Highest natural frequency of the free-shaft modes that are kept. Static correction modes for every attachment are added; `plan` prints what is omitted.").example_of("5 kHz"),
-    Key::new("body.beam.damping", BRAKE, Default { value: "0 1/s", reason: "no damping" }, "Mass-proportional damping: force per mass and velocity, in non-rotating axes.").hint("the source has 77 and 100 1/s for solids").example_of("100 1/s"),
+    Key::new("body.beam.damping", DAMPING, Default { value: "0 1/s", reason: "no damping" }, "Mass-proportional damping: force per mass and velocity, in non-rotating axes.").hint("the source has 77 and 100 1/s for solids").example_of("100 1/s"),
     Key::new("body.beam.damped_motion", Kind::Choice(DAMPED_MOTIONS), Default { value: "absolute", reason: "as (2.7)" }, "Velocity that `damping` acts on: all transverse and axial motion, or bending only. Bending only gives little damping of whirl if the bearings do not move."),
-    Key::new("body.beam.internal_damping", BRAKE, Default { value: "0 1/s", reason: "no damping" }, "Mass-proportional damping of bending in axes that rotate with the shaft; above a critical speed it destabilises whirl.").example_of("10 1/s"),
+    Key::new("body.beam.internal_damping", DAMPING, Default { value: "0 1/s", reason: "no damping" }, "Mass-proportional damping of bending in axes that rotate with the shaft; above a critical speed it destabilises whirl.").example_of("10 1/s"),
     Key::new("body.beam.segments.length", SIZE, Required, "Length along the axis.").hint(SIZE_HINT).example_of("400 mm"),
     Key::new("body.beam.segments.outer_diameter", SIZE, Required, "Outer diameter.").hint(SIZE_HINT).example_of("30 mm"),
     Key::new("body.beam.segments.inner_diameter", BORE, Depends("0, a solid section"), "Diameter of the bore.").hint(SIZE_HINT).example_of("10 mm"),
@@ -51,12 +51,12 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("body.beam.mesh.race_stiffness", Kind::Quantity(Stiffness, closed(1.0, 1e13, "N/m")), Default { value: "2e9 N/m", reason: "as the source (4.2.3)" }, "With `method = \"explicit\"`: stiffness, along each axis, of the spring between the centre of a race or disc and that of its section. The rotational stiffness is this times the square of the shaft diameter.").hint("the source has 2e9 N/m"),
     Key::new("body.beam.mesh.race_damping", Kind::Quantity(Damping, closed(0.0, 1e9, "N s/m")), Default { value: "200 N s/m", reason: "small, as in the source: 1 % of critical for a race of 50 g" }, "Damping parallel to `race_stiffness`, rotational damping likewise.").hint("the source requires a small one and states no value"),
     Key::new("body.beam.disc.at", PLACE, Required, "Axial position of the disc's centre.").hint(PLACE_HINT).example_of("0 mm"),
-    Key::new("body.beam.disc.mass", MASS, OF_RING, "Mass of the disc, or of a race mounted there.").hint(MASS_HINT).example_of("20 kg"),
-    Key::new("body.beam.disc.axial", INERTIA, OF_DISC, "Moment of inertia of the disc about the shaft axis.").hint(INERTIA_HINT).example_of("0.1 kg m^2"),
-    Key::new("body.beam.disc.transverse", INERTIA, OF_DISC, "Moment of inertia of the disc about a transverse axis through its centre.").hint(INERTIA_HINT).example_of("0.05 kg m^2"),
-    Key::new("body.beam.disc.outer_diameter", SIZE, OF_RING, "Outer diameter of a disc of the shaft's density.").hint(SIZE_HINT).example_of("200 mm"),
+    Key::new("body.beam.disc.mass", MASS, SIZE_OR_MASS, "Mass of the disc, or of a race mounted there.").hint(MASS_HINT).example_of("20 kg"),
+    Key::new("body.beam.disc.axial", INERTIA, WITH_MASS, "Moment of inertia of the disc about the shaft axis.").hint(INERTIA_HINT).example_of("0.1 kg m^2"),
+    Key::new("body.beam.disc.transverse", INERTIA, WITH_MASS, "Moment of inertia of the disc about a transverse axis through its centre.").hint(INERTIA_HINT).example_of("0.05 kg m^2"),
+    Key::new("body.beam.disc.outer_diameter", SIZE, SIZE_OR_MASS, "Outer diameter of a disc of the shaft's density.").hint(SIZE_HINT).example_of("200 mm"),
     Key::new("body.beam.disc.inner_diameter", BORE, Depends("0"), "Inner diameter of the disc: that of the shaft if the segments pass through it.").hint(SIZE_HINT).example_of("30 mm"),
-    Key::new("body.beam.disc.width", SIZE, OF_RING, "Axial width of the disc.").hint(SIZE_HINT).example_of("20 mm"),
+    Key::new("body.beam.disc.width", SIZE, SIZE_OR_MASS, "Axial width of the disc.").hint(SIZE_HINT).example_of("20 mm"),
     Key::new("body.beam.load.at", PLACE, Required, "Axial position of the force, which acts at the centre of the section.").hint(PLACE_HINT).example_of("0 mm"),
     Key::new("body.beam.load.x", FORCE, Optional, "Axial force over time.").hint(LOAD_HINT),
     Key::new("body.beam.load.y", FORCE, Optional, "Lateral force over time.").hint(LOAD_HINT),
