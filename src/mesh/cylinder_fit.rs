@@ -8,7 +8,6 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 pub struct FittedCylinder {
     /// A point of the axis.
     pub point: Vector3<f64>,
-    /// Unit vector.
     pub axis: Vector3<f64>,
     pub radius: f64,
 }

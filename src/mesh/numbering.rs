@@ -4,7 +4,6 @@
 use crate::mesh::tet_mesh::TetMesh;
 use crate::mesh::topology::{Lists, node_neighbours};
 
-/// A renumbered mesh and the new numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Renumbered {
     pub mesh: TetMesh,

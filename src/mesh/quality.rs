@@ -8,7 +8,6 @@ use crate::mesh::node_order::{EDGES, SIDES};
 use crate::mesh::tet_mesh::TetMesh;
 use nalgebra::Vector3;
 
-/// A value and its element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
     pub value: f64,

@@ -16,7 +16,6 @@ pub struct Repair {
     pub drop_unreferenced: bool,
 }
 
-/// Repairs that were done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repaired {
     pub turned_elements: usize,

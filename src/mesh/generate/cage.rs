@@ -35,7 +35,6 @@ pub struct RailRelief {
     pub belt_width: f64,
 }
 
-/// Numbers of cells of a cage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CageMesh {
     /// Along a quarter of a pocket's edge.

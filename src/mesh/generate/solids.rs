@@ -8,7 +8,6 @@ use crate::mesh::select::Region;
 use crate::mesh::surface::Surface;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI, TAU};
 
-/// A cuboid with nodes at all combinations of stations.
 fn cuboid(x: &[f64], y: &[f64], z: &[f64]) -> Result<Solid, MeshError> {
     let mut cells = Hexahedra::default();
     cells.add_block([x.len() - 1, y.len() - 1, z.len() - 1], |[i, j, k]| [x[i], y[j], z[k]]);

@@ -90,7 +90,6 @@ pub fn member_count(
     Ok(count as usize + 1)
 }
 
-/// First, last and step of a GENERATE line.
 fn range(words: &[&str]) -> [u64; 3] {
     let mut bounds = [0, 0, 1];
     for (bound, word) in bounds.iter_mut().zip(words) {

@@ -11,7 +11,6 @@ use crate::mesh::read::source::{Coding, Source, excerpt};
 use crate::mesh::read::{LengthUnit, Loaded, Note, gmsh2, gmsh4};
 use std::collections::HashMap;
 
-/// Names of physical groups by dimension and tag.
 #[derive(Default)]
 pub(super) struct Names(HashMap<(i64, i64), String>);
 
@@ -220,7 +219,6 @@ fn physical_names(source: &mut Source) -> Result<Names, ReadError> {
     Ok(names)
 }
 
-/// Kinds of elements in a tetrahedral mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Point,

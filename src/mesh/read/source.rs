@@ -2,7 +2,6 @@
 
 use crate::mesh::read::error::{Place, Problem, ReadError};
 
-/// Coding of numbers in a section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
     Text,
@@ -22,7 +21,6 @@ pub fn excerpt(bytes: &[u8]) -> String {
     String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]).into_owned()
 }
 
-/// Description of an expected count, for messages.
 pub fn count_of(what: &str) -> &'static str {
     match what {
         "nodes" => "a count of nodes (a whole number, 0 or more)",

@@ -10,7 +10,6 @@ const PER_LINE: usize = 12;
 /// Longest number that CalculiX reads, characters.
 const NUMBER_WIDTH: usize = 20;
 
-/// Sets of every file.
 const ALL_NODES: &str = "all_nodes";
 const ALL_ELEMENTS: &str = "all_elements";
 

@@ -48,7 +48,6 @@ impl std::fmt::Display for Range {
     }
 }
 
-/// Kind of a key's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     Text,
@@ -57,11 +56,9 @@ pub enum Kind {
         low: i64,
         high: i64,
     },
-    /// One word of this list.
     Choice(&'static [&'static str]),
     /// A list of distinct words of this list.
     Choices(&'static [&'static str]),
-    /// A number without a unit.
     Number(Range),
     /// A string of a number and a unit.
     Quantity(Dimension, Range),
@@ -90,7 +87,6 @@ pub enum Need {
     },
 }
 
-/// One row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     pub path: &'static str,
@@ -185,7 +181,6 @@ impl Key {
     }
 }
 
-/// Typical value of a dimension.
 fn usual(dimension: Dimension, range: Range) -> &'static str {
     match dimension {
         Length if range.unit == "um" => "5 um",
@@ -243,7 +238,6 @@ pub(crate) const fn table(path: &'static str, doc: &'static str, example: &'stat
     Table { path, doc, example, list: false }
 }
 
-/// A list of tables.
 pub(crate) const fn list_table(
     path: &'static str,
     doc: &'static str,

@@ -32,12 +32,10 @@ fn definition_name(dimension: Dimension) -> String {
     noun(dimension).replace(' ', "_")
 }
 
-/// "length", "rotation speed".
 pub(crate) fn noun(dimension: Dimension) -> &'static str {
     dimension.name().split_once(' ').map_or(dimension.name(), |(_, noun)| noun)
 }
 
-/// A string of number and unit.
 fn quantity_schema(dimension: Dimension) -> Value {
     let spellings: Vec<String> = dimension
         .units()
@@ -205,7 +203,6 @@ fn profile_name(dimension: Dimension) -> String {
     format!("{}_profile", definition_name(dimension))
 }
 
-/// Schema of a quantity or one of the tables of [`FORMS`].
 fn profile_schema(dimension: Dimension) -> Value {
     let own = reference(dimension);
     let forms = FORMS.iter().map(|form| {

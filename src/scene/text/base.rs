@@ -55,7 +55,6 @@ impl Document {
         self.laid_over(base)
     }
 
-    /// Folder of the scene file.
     fn folder(&self) -> &Path {
         Path::new(self.name()).parent().unwrap_or(Path::new(""))
     }

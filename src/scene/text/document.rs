@@ -61,7 +61,6 @@ impl Default for Layer {
     }
 }
 
-/// One table with a name.
 #[derive(Clone, Debug)]
 pub(crate) struct Named {
     /// Path without the name, `bearing`.
@@ -115,7 +114,7 @@ impl Document {
         Document::of_source(source::decode(name.to_string(), bytes)?, format, 0)
     }
 
-    /// Reads a parsed source. `above` is the number of scenes that inherit this one.
+    /// `above` is the number of scenes that inherit this one.
     pub(crate) fn of_source(
         source: Source,
         format: Format,
@@ -136,7 +135,6 @@ impl Document {
         document.on_base(above)
     }
 
-    /// Reads the entries of the table `path`.
     pub(crate) fn fill(&mut self, path: &str, entries: Vec<Entry>) -> Result<(), SceneError> {
         for entry in entries {
             let full =
@@ -343,7 +341,6 @@ impl Document {
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))
     }
 
-    /// Finds the key of a path in this scene.
     fn row<'p>(&self, path: &'p str) -> Result<Leads<'p>, SceneError> {
         let error = |problem| SceneError::new(Place::file(&self.source.name), path, problem);
         let leads = keys::find_named(path).ok_or_else(|| error(sweep::unknown_key(path)))?;
@@ -358,12 +355,10 @@ impl Document {
         }
     }
 
-    /// File name as given.
     pub fn name(&self) -> &str {
         &self.source.name
     }
 
-    /// The text of the scene's own file.
     pub fn text(&self) -> &str {
         &self.source.text
     }
@@ -377,7 +372,6 @@ impl Document {
         &self.sweep
     }
 
-    /// Returns whether a key is given.
     pub fn is_given(&self, path: &str) -> bool {
         self.value(path).is_some()
     }

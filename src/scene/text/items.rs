@@ -18,7 +18,6 @@ pub(crate) struct Item {
 }
 
 impl Item {
-    /// Offset of the table.
     pub fn begins(&self) -> usize {
         self.offset
     }
@@ -45,7 +44,6 @@ impl<'d> ItemRef<'d> {
         self.item.given.iter().find(|(given, _)| *given == row).map(|(_, given)| &given.value)
     }
 
-    /// An error about a key of this table, or about the table.
     pub fn error(&self, name: &str, problem: Problem) -> SceneError {
         let table = self.document.shown(self.item.table, self.item.named);
         let path = format!("{table}.{}.{name}", self.number);
@@ -61,7 +59,6 @@ impl<'d> ItemRef<'d> {
 }
 
 impl Document {
-    /// Reads the tables of a list of tables.
     pub(crate) fn fill_list(
         &mut self,
         table: &'static keys::Table,

@@ -23,7 +23,6 @@ impl Document {
         (is_table && mistyped.is_none()).then_some(*table)
     }
 
-    /// Reads a named table.
     pub(crate) fn fill_named(
         &mut self,
         table: &'static str,
@@ -142,7 +141,6 @@ impl Document {
         &mut self.named[index].layer
     }
 
-    /// An error about a named table.
     pub(crate) fn error_of_name(&self, table: &str, name: &str, problem: Problem) -> SceneError {
         let own = self.named.iter().find(|named| named.table == table && named.name == name);
         let path = format!("{table}.{name}");

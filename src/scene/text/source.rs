@@ -6,7 +6,6 @@ use crate::scene::text::input_file::InputError;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Format of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Toml,
@@ -19,7 +18,6 @@ pub const LARGEST_FILE: u64 = 16 << 20;
 /// Nesting limit of tables and lists. Checked before parsing, so that no parser can overflow the stack.
 pub const DEEPEST_NESTING: usize = 64;
 
-/// Name and text of a scene.
 #[derive(Clone, Debug)]
 pub struct Source {
     pub name: String,
@@ -82,7 +80,6 @@ fn format_of(path: &Path) -> Option<Format> {
     }
 }
 
-/// Decodes UTF-8.
 pub fn decode(name: String, bytes: Vec<u8>) -> Result<Source, SceneError> {
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Source { name, text, base: None, is_fixed: false }),

@@ -8,7 +8,6 @@ use crate::scene::text::tree::{Node, Value};
 use crate::scene::text::units::{parse_number, parse_quantity, plain};
 use crate::scene::text::value::{ValueError, check_bare};
 
-/// One varied key and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepAxis {
     /// Path with the name of a named table: `bearing.left.clearance.radial`.
@@ -65,7 +64,6 @@ fn range_value(low: f64, high: f64, index: usize, count: usize) -> f64 {
     format!("{value:.14e}").parse().unwrap_or(value)
 }
 
-/// Axis from an entry of the `[sweep]` table.
 pub(crate) fn axis_of_node(
     path: &str,
     key_offset: usize,

@@ -5,7 +5,6 @@ use crate::scene::text::source::{Format, Source};
 use std::collections::HashSet;
 use toml::de::{DeTable, DeValue};
 
-/// A value and its offset.
 #[derive(Clone, Debug)]
 pub struct Node {
     pub value: Value,

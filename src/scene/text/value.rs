@@ -39,7 +39,6 @@ impl From<(usize, Problem)> for ValueError {
     }
 }
 
-/// Checks `node` against `key`.
 pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
     let here = |problem| ValueError::from((node.offset, problem));
     match (key.kind, &node.value) {
@@ -116,7 +115,6 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
     check(key, &Node { value, offset: 0 }).map_err(|error| error.problem)
 }
 
-/// Value of the first kind that accepts it.
 fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, Problem> {
     let mut first_problem = None;
     for (index, kind) in kinds.iter().enumerate() {
@@ -137,7 +135,6 @@ fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, P
     Err(first_problem.unwrap_or_else(|| wrong_kind(key, value)))
 }
 
-/// A list of increasing quantities.
 fn quantities(
     key: &Key,
     items: &[Node],
@@ -160,7 +157,6 @@ fn quantities(
     Ok(Checked::Quantities(values))
 }
 
-/// Description of a kind, for messages.
 fn expected(kind: Kind) -> String {
     match kind {
         Kind::Text => "a text in quotes".to_string(),
@@ -205,7 +201,6 @@ fn wrong_kind(key: &Key, found: &Value) -> Problem {
     }
 }
 
-/// Description of a found value, for messages.
 pub(crate) fn described(found: &Value) -> String {
     match found {
         Value::Text(_) => format!("the text {}", shown(found)),
