@@ -1,4 +1,4 @@
-//! Whether a mesh can be solved on: every fault found, named and placed, and nothing repaired.
+//! Mesh checks: all faults of a mesh with numbers and positions. Nothing is repaired.
 
 use crate::mesh::error::Fault;
 use crate::mesh::measure::{least_jacobian, straight_volume, volume};
@@ -10,16 +10,16 @@ use crate::mesh::topology::{Union, sorted_faces};
 use nalgebra::Vector3;
 use std::fmt;
 
-/// What a mesh may have.
+/// Limits of the mesh checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Largest aspect of an element (1 for a regular tetrahedron).
+    /// Largest aspect ratio of an element (1 for a regular tetrahedron).
     pub aspect: f64,
-    /// Nodes closer than this part of the mesh's size count as one place.
+    /// Distance of coincident nodes, divided by the size of the mesh.
     pub duplicate: f64,
-    /// Enclosed cavities that are meant to be there.
+    /// Intended enclosed cavities.
     pub cavities: usize,
-    /// Separate bodies that are meant to be there.
+    /// Intended separate bodies.
     pub bodies: usize,
 }
 
@@ -29,7 +29,7 @@ impl Default for Limits {
     }
 }
 
-/// All faults of a mesh in one line.
+/// All faults of a mesh; displayed in one line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faults(pub Vec<Fault>);
 
@@ -42,18 +42,20 @@ impl fmt::Display for Faults {
 
 impl std::error::Error for Faults {}
 
-/// A mid-side node further from its edge's middle than this part of the edge is out of place; the
-/// bulge of a quarter circle over its chord is 0.21.
+/// Largest distance of a mid-side node from the middle of its edge, divided by the edge's length. The
+/// arc height of a quarter circle over its chord is 0.21.
 const FARTHEST_MID_SIDE: f64 = 0.25;
 
+/// Checks a mesh.
+///
 /// # Errors
-/// [`Faults`] with everything [`faults`] found.
+/// [`Faults`] with all results of [`faults`].
 pub fn check(mesh: &TetMesh, limits: &Limits) -> Result<(), Faults> {
     let found = faults(mesh, limits);
     if found.is_empty() { Ok(()) } else { Err(Faults(found)) }
 }
 
-/// Every fault of `mesh`, each kind once with its number and its worst or first place.
+/// Faults of `mesh`, each kind once with its number and its worst or first position.
 pub fn faults(mesh: &TetMesh, limits: &Limits) -> Vec<Fault> {
     let mut found = Vec::new();
     found.extend(inverted(mesh));
@@ -76,7 +78,7 @@ fn centre(mesh: &TetMesh, element: u32) -> [f64; 3] {
     ((a + b + c + d) / 4.0).into()
 }
 
-/// The number of elements for which `bad` gives a value, and the one with the largest value.
+/// Number of elements for which `bad` returns a value, and the one with the largest value.
 fn worst(mesh: &TetMesh, bad: impl Fn(usize) -> Option<f64>) -> Option<(usize, u32, f64)> {
     let mut result: Option<(usize, u32, f64)> = None;
     for index in 0..mesh.elements.len() {
@@ -93,7 +95,7 @@ fn inverted(mesh: &TetMesh) -> Option<Fault> {
     let bad = |index: usize| {
         let points = mesh.corner_points(index);
         let volume = straight_volume(points);
-        // Flat to rounding: the volume is a difference of products of this size.
+        // Rounding error of the volume, a difference of products of this size.
         let longest =
             EDGES.map(|[a, b]| (points[b] - points[a]).norm()).into_iter().fold(0.0, f64::max);
         let rounding = 1e-14 * longest * longest * longest;
@@ -182,7 +184,7 @@ fn unreferenced(mesh: &TetMesh) -> Option<Fault> {
     Some(Fault::UnreferencedNodes { count, first: first as u64 })
 }
 
-/// Whether two faces with the same corners run through them in the same direction.
+/// Returns whether two faces with the same corners have the same orientation.
 fn same_direction(mesh: &TetMesh, a: Face, b: Face) -> bool {
     let [a, b] = [mesh.face_corners(a), mesh.face_corners(b)];
     (0..3).any(|turn| (0..3).all(|i| a[i] == b[(i + turn) % 3]))
@@ -191,7 +193,7 @@ fn same_direction(mesh: &TetMesh, a: Face, b: Face) -> bool {
 fn overlapping(mesh: &TetMesh, faces: &[([u32; 3], Face)], turned: bool) -> Option<Fault> {
     let wrong = |owners: &&[([u32; 3], Face)]| match owners {
         [_] => false,
-        // Where elements are inverted, that is the fault, and directions say nothing.
+        // With inverted elements, which are reported, orientations are meaningless.
         [a, b] => !turned && same_direction(mesh, a.1, b.1),
         _ => true,
     };
@@ -203,7 +205,7 @@ fn overlapping(mesh: &TetMesh, faces: &[([u32; 3], Face)], turned: bool) -> Opti
     })
 }
 
-/// Edges of the surface that do not join two faces, and closed parts that look inwards.
+/// Edges of the surface that do not join two faces, and cavities: closed parts with inward orientation.
 fn boundary(mesh: &TetMesh, faces: &[([u32; 3], Face)], cavities: usize) -> Vec<Fault> {
     let alone = |owners: &&[([u32; 3], Face)]| owners.len() == 1;
     let surface: Vec<Face> =
@@ -234,8 +236,8 @@ fn boundary(mesh: &TetMesh, faces: &[([u32; 3], Face)], cavities: usize) -> Vec<
         let [first, second] = [first, second].map(u64::from);
         found.push(Fault::NonManifold { count: open, first, second, at });
     }
-    // Volume behind each closed part by the divergence theorem: negative for a cavity. Measured
-    // from the mesh's own corner, so that places far from the origin lose nothing.
+    // Volume enclosed by each closed part by the divergence theorem: negative for a cavity. Coordinates
+    // relative to the mesh's corner avoid cancellation far from the origin.
     let origin = Vector3::from(mesh.bounding_box().0);
     let mut volumes = vec![0.0; surface.len()];
     let mut sizes = vec![0usize; surface.len()];

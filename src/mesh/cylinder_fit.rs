@@ -1,20 +1,19 @@
-//! The cylinder that lies nearest to given places.
+//! Least-squares fit of a cylinder to points.
 
 use crate::mesh::surface::{Surface, polar};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-/// A cylinder without ends. Lengths in m.
+/// An unbounded cylinder. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedCylinder {
     /// A point of the axis.
     pub point: Vector3<f64>,
-    /// Unit vector.
     pub axis: Vector3<f64>,
     pub radius: f64,
 }
 
 impl FittedCylinder {
-    /// How far outside the cylinder a place is, m; negative inside.
+    /// Radial distance of a point from the cylinder, m; negative inside.
     pub fn outside(&self, place: Vector3<f64>) -> f64 {
         polar(self.point.into(), self.axis.into(), place).radius - self.radius
     }
@@ -25,15 +24,15 @@ impl FittedCylinder {
     }
 }
 
-/// Least squares of the distances from the cylinder, about an axis that is nearly `along`. A part of
-/// the circumference does. What the places do not determine (the tilt, if they lie in one plane)
-/// stays as `along` has it.
+/// Fits a cylinder by least squares of the radial distances, with an axis nearly `along`. Points on part of
+/// the circumference are enough. Parameters that the points do not determine (the tilt, if they are in one
+/// plane) keep the value of `along`.
 ///
-/// Nothing for fewer than three places, or for places that are not about an axis.
+/// `None` for fewer than three points, or for points that are not around an axis.
 pub fn fit_cylinder(places: &[Vector3<f64>], along: Vector3<f64>) -> Option<FittedCylinder> {
-    /// Each takes the error to about its square; tilts are small.
+    /// Gauss-Newton iterations; they converge quadratically for small tilts.
     const ROUNDS: usize = 8;
-    /// Part of the largest eigenvalue below which a motion of the axis is not determined.
+    /// Eigenvalue, relative to the largest, below which a parameter of the axis is not determined.
     const DETERMINED: f64 = 1e-10;
     if places.len() < 3 {
         return None;
@@ -45,7 +44,7 @@ pub fn fit_cylinder(places: &[Vector3<f64>], along: Vector3<f64>) -> Option<Fitt
     let count = places.len() as f64;
     let middle = places.iter().sum::<Vector3<f64>>() / count;
 
-    // A circle seen along the axis, which is linear in its centre: it starts the rest.
+    // Initial value: circle fit in the plane across the axis, which is linear in its centre.
     let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for place in places {
         let (y, z) = ((place - middle).dot(&across), (place - middle).dot(&up));

@@ -1,24 +1,23 @@
-//! What can be wrong with a mesh, in numbers and places. What can be wrong with a file is
-//! [`ReadError`](crate::mesh::read::ReadError).
+//! Errors and faults of meshes. Errors of mesh files are [`ReadError`](crate::mesh::read::ReadError).
 //!
 //! Elements and nodes are counted from 0.
 
 use thiserror::Error;
 
-/// A request that cannot be met.
+/// Error of an operation on a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MeshError {
     #[error(
-        "the mesh has no tetrahedra; in Gmsh give the volume a physical group too, or save all elements"
+        "the mesh has no tetrahedra; in Gmsh, assign a physical group to the volume, or save all elements"
     )]
     NoElements,
-    #[error("{count} nodes or elements are more than the {max} that can be numbered", max = u32::MAX)]
+    #[error("{count} nodes or elements are too many; at most {max} can be numbered", max = u32::MAX)]
     TooLarge { count: usize },
-    #[error("node {node} is not at a finite place: {at:?}")]
+    #[error("node {node} has coordinates that are not finite: {at:?}")]
     NotFinite { node: usize, at: [f64; 3] },
     #[error("element {element} names node {node}, but there are only {count} nodes")]
     NodeOutOfRange { element: usize, node: u32, count: usize },
-    #[error("no {kind} set is called \"{name}\"; there are: {}", list(known))]
+    #[error("there is no {kind} set \"{name}\"; there are: {}", list(known))]
     NoSuchSet { kind: &'static str, name: String, known: Vec<String> },
     #[error(
         "set \"{name}\" ({region}) matches nothing: the nearest node is {:e} m away; move the region or widen its tolerance",
@@ -26,41 +25,43 @@ pub enum MeshError {
     )]
     EmptySet { name: String, region: String, nearest: f64 },
     #[error(
-        "set \"{name}\" ({region}) matches nothing: a plane or cylinder selects the surface of the mesh only, and none of its faces lies there ({nodes} nodes do); for nodes inside take a box, `low` and `high`"
+        "set \"{name}\" ({region}) matches nothing: a plane or cylinder selects faces of the mesh's surface, and none is there (but {nodes} nodes are); to select nodes inside, use a box, `low` and `high`"
     )]
     NoSurfaceThere { name: String, region: String, nodes: usize },
-    #[error("{what} = {}{unit} is outside {allowed}", six_digits(*value))]
+    #[error("{what} = {}{unit} is out of range. Allowed: {allowed}", six_digits(*value))]
     Dimension {
         what: &'static str,
         value: f64,
-        /// As it follows a number: `" m"`, or nothing.
+        /// Unit with a leading space, `" m"`, or empty.
         unit: &'static str,
         allowed: String,
     },
     #[error(
-        "cell {cell} of block {block} is turned inside out: these dimensions leave no room for this mesh"
+        "cell {cell} of block {block} is inverted; change the dimensions or the numbers of cells"
     )]
     Tangled { block: usize, cell: usize },
     #[error(
-        "joining nodes within {tolerance:.5e} m would collapse element {element}, two of whose nodes lie so close; take the element out, or remesh there"
+        "merging nodes within {tolerance:.5e} m would collapse element {element}, which has two nodes that close; remove the element, or remesh there"
     )]
     Collapsed { element: u64, tolerance: f64 },
-    #[error("the mesh has mid-side nodes already")]
+    #[error("the mesh already has mid-side nodes")]
     AlreadyQuadratic,
-    #[error("field \"{field}\" has {found} values where {expected} are needed")]
+    #[error("field \"{field}\" has {found} values, but {expected} are needed")]
     FieldLength { field: String, found: usize, expected: usize },
-    #[error("field \"{field}\" holds {value} at index {index}; only finite values can be written")]
+    #[error(
+        "field \"{field}\" has the value {value} at index {index}; only finite values can be written"
+    )]
     FieldNotFinite { field: String, index: usize, value: f64 },
     #[error("the name {name:?} cannot be written: {why}")]
     Name { name: String, why: &'static str },
 }
 
-/// A number to six digits, enough to find a place by.
+/// Rounds a number to six digits, for messages.
 pub(crate) fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
-/// A place as messages have it: `(0.02, 0, -0.005) m`.
+/// Formats a point for messages: `(0.02, 0, -0.005) m`.
 pub(crate) fn place(at: &[f64; 3]) -> String {
     let [x, y, z] = at.map(six_digits);
     format!("({x}, {y}, {z}) m")
@@ -75,26 +76,26 @@ fn list(names: &[String]) -> String {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Fault {
     #[error(
-        "{count} of {of} elements are inverted or flat (worst: element {element} near {}, volume {volume:.5e} m³); where the whole mesh is turned, the repair `orient` helps",
+        "{count} of {of} elements are inverted or flat (worst: element {element} near {}, volume {volume:.5e} m³); if all elements are inverted, use the repair `orient`",
         place(at)
     )]
     Inverted { count: usize, of: usize, element: u64, at: [f64; 3], volume: f64 },
     #[error(
-        "{count} elements have a folded side although their corners are in order (worst: element {element} near {}, least Jacobian {ratio:.5e} of the mean); move the mid-side nodes or refine there",
+        "{count} elements are folded by their mid-side nodes (worst: element {element} near {}, least Jacobian {ratio:.5e} of the mean); move the mid-side nodes or refine there",
         place(at)
     )]
     Folded { count: usize, element: u64, at: [f64; 3], ratio: f64 },
     #[error(
-        "{count} elements are slivers beyond aspect {limit} (worst: element {element} near {}, aspect {aspect:.4e}); remesh there",
+        "{count} elements are slivers with an aspect ratio above {limit} (worst: element {element} near {}, aspect ratio {aspect:.4e}); remesh there",
         place(at)
     )]
     Sliver { count: usize, element: u64, at: [f64; 3], aspect: f64, limit: f64 },
     #[error(
-        "{count} mid-side nodes lie far from their edges (first: node {node} of element {element}, off by {off:.3} of the edge); is this another program's node order?"
+        "{count} mid-side nodes are far from their edges (first: node {node} of element {element}, off by {off:.3} of the edge); is the node order that of another program?"
     )]
     MidSide { count: usize, element: u64, node: u64, off: f64 },
     #[error(
-        "{count} pairs of nodes share a place within {tolerance:.5e} m (first: {first} and {second} at {}); the repair `merge-duplicates` joins them",
+        "{count} pairs of nodes coincide within {tolerance:.5e} m (first: {first} and {second} at {}); the repair `merge-duplicates` merges them",
         place(at)
     )]
     DuplicateNodes { count: usize, first: u64, second: u64, at: [f64; 3], tolerance: f64 },
@@ -103,12 +104,12 @@ pub enum Fault {
     )]
     UnreferencedNodes { count: usize, first: u64 },
     #[error(
-        "{count} faces are shared by more than two elements or lie on the same side of two (first: element {element} near {}); elements overlap there",
+        "{count} faces are shared by more than two elements or by two elements on the same side (first: element {element} near {}); elements overlap there",
         place(at)
     )]
     Overlapping { count: usize, element: u64, at: [f64; 3] },
     #[error(
-        "the surface is not closed like a solid's: {count} edges are shared by other than two of its faces (first: nodes {first} and {second} near {})",
+        "the surface is not that of a solid: {count} edges do not belong to exactly two of its faces (first: nodes {first} and {second} near {})",
         place(at)
     )]
     NonManifold { count: usize, first: u64, second: u64, at: [f64; 3] },
@@ -118,7 +119,7 @@ pub enum Fault {
     )]
     Cavity { count: usize, faces: usize, at: [f64; 3], volume: f64 },
     #[error(
-        "the mesh falls into {count} bodies that share no face (elements {first} and {second}); join them or read them one by one"
+        "the mesh consists of {count} bodies that share no face (elements {first} and {second}); join them or use one mesh for each"
     )]
     SeveralBodies { count: usize, first: u64, second: u64 },
     #[error("{kind} set \"{name}\" is empty")]
@@ -126,7 +127,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// With other numbers of elements and nodes: those of the file that they came from.
+    /// The fault with the element and node numbers of the file.
     pub fn renumbered(
         mut self,
         element_number: impl Fn(u64) -> u64,

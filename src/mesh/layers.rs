@@ -1,22 +1,22 @@
-//! How many elements a mesh has through its walls.
+//! Number of elements through the walls of a mesh.
 
 use crate::kinematics::vec3::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::mesh::node_order::SIDES;
 use crate::mesh::tet_mesh::Elements;
 
-/// Elements through a wall, and how thick it is there.
+/// Number of elements through a wall and its thickness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
-    /// Length of a line straight into the body, each element's part of it over the element's own height
-    /// along it: 2 under a face with two cells to the other side, however many tetrahedra fill a cell.
+    /// Number of elements along the inward normal of a face: the sum over elements of the length of the normal inside
+    /// each, divided by the element's height along it. 2 for two cells, however many tetrahedra fill a cell.
     pub elements: f64,
-    /// m, and the middle of the face from which it is measured.
+    /// Thickness of the wall, m, and the middle of the face from which it is measured.
     pub thickness: f64,
     pub at: Vec3,
 }
 
-/// The wall that `part` of the surface has no fewer elements beneath than: the thinnest, but for edges and
-/// corners, which lines leave soon. `None` of a mesh without a surface.
+/// Quantile of the walls: a fraction `part` of the surface has at most as many elements beneath it. A small `part`
+/// gives the thinnest wall without edges and corners. `None` for a mesh without a surface.
 pub fn thinnest_wall(nodes: &[Vec3], elements: &Elements, part: f64) -> Option<Wall> {
     let neighbours = neighbours(elements);
     let mut walls: Vec<(Wall, f64)> = Vec::new();
@@ -27,7 +27,7 @@ pub fn thinnest_wall(nodes: &[Vec3], elements: &Elements, part: f64) -> Option<W
             walls.push(found);
         }
     }
-    // Of walls with as many elements the thinner ones; whole numbers of elements come with rounding.
+    // Among walls with equally many elements the thinner first; whole numbers of elements have rounding errors.
     let order = |wall: &Wall| [(1e6 * wall.elements).round(), wall.thickness];
     walls.sort_by(|a, b| {
         let ([many, thick], [others, other]) = (order(&a.0), order(&b.0));
@@ -44,7 +44,7 @@ pub fn thinnest_wall(nodes: &[Vec3], elements: &Elements, part: f64) -> Option<W
         .map(|(wall, _)| *wall)
 }
 
-/// For face 4 e + s of element e the element on the other side.
+/// Neighbour element across face 4 e + s of element e.
 fn neighbours(elements: &Elements) -> Vec<Option<u32>> {
     let mut faces: Vec<([u32; 3], u32)> = Vec::with_capacity(4 * elements.len());
     for element in 0..elements.len() {
@@ -68,7 +68,7 @@ fn neighbours(elements: &Elements) -> Vec<Option<u32>> {
     neighbours
 }
 
-/// From the middle of a face straight in, to where the line leaves the body; and the face's area, m².
+/// Wall along the inward normal from the middle of a face; and the face's area, m².
 fn wall_under(
     nodes: &[Vec3],
     elements: &Elements,
@@ -88,7 +88,7 @@ fn wall_under(
     let at = SIDES[entered].map(|n| first[n]);
     let at = scale(add(add(at[0], at[1]), at[2]), 1.0 / 3.0);
     let mut wall = Wall { elements: 0.0, thickness: 0.0, at };
-    // No line passes an element twice.
+    // Bounds the loop: no line passes an element twice.
     for _ in 0..elements.len() {
         let here = corners(element);
         let heights = here.map(|corner| dot(sub(corner, at), along));

@@ -1,4 +1,4 @@
-//! Volumes of elements, areas of faces, and what share of an area each node carries.
+//! Volumes of elements, areas of faces, and distribution of areas to nodes.
 
 use crate::mesh::node_order::EDGES;
 use crate::mesh::tet_mesh::{Elements, Face, Order, TetMesh};
@@ -9,9 +9,9 @@ pub fn straight_volume([a, b, c, d]: [Vector3<f64>; 4]) -> f64 {
     (b - a).cross(&(c - a)).dot(&(d - a)) / 6.0
 }
 
-/// Volume of element `index`, m³; negative where it is turned inside out.
+/// Volume of element `index`, m³; negative if it is inverted.
 ///
-/// Exact for curved elements too: the Jacobian is a cubic and so is the rule (five points).
+/// Exact for curved elements too: the Jacobian is cubic, and the five-point rule has degree three.
 pub fn volume(mesh: &TetMesh, index: usize) -> f64 {
     match &mesh.elements {
         Elements::Linear(_) => straight_volume(mesh.corner_points(index)),
@@ -33,10 +33,10 @@ pub fn total_volume(mesh: &TetMesh) -> f64 {
     (0..mesh.elements.len()).map(|index| volume(mesh, index)).sum()
 }
 
-/// Determinant of the map from the unit tetrahedron to a ten-node element, at the place with
-/// barycentric coordinates `at`; six times the volume where edges are straight.
+/// Jacobian determinant of the map from the unit tetrahedron to a ten-node element at the
+/// barycentric coordinates `at`; six times the volume if edges are straight.
 pub fn jacobian(points: &[Vector3<f64>; 10], at: [f64; 4]) -> f64 {
-    // Derivatives by the four barycentric coordinates; the fourth depends on the other three.
+    // Derivatives with respect to the four barycentric coordinates; the fourth depends on the other three.
     let mut by = [Vector3::zeros(); 4];
     for corner in 0..4 {
         by[corner] += points[corner] * (4.0 * at[corner] - 1.0);
@@ -48,7 +48,7 @@ pub fn jacobian(points: &[Vector3<f64>; 10], at: [f64; 4]) -> f64 {
     Matrix3::from_columns(&[by[1] - by[0], by[2] - by[0], by[3] - by[0]]).determinant()
 }
 
-/// Smallest of a ten-node element's Jacobians at corners, mid-sides and centre.
+/// Smallest Jacobian of a ten-node element at corners, mid-sides and centre.
 pub fn least_jacobian(points: &[Vector3<f64>; 10]) -> f64 {
     let corner = |i: usize| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 });
     let middle =
@@ -63,21 +63,21 @@ pub fn face_normal(mesh: &TetMesh, face: Face) -> Vector3<f64> {
     (b - a).cross(&(c - a))
 }
 
-/// How a face's area is dealt to its nodes.
+/// Distribution of a face's area to its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Share {
     /// ∫ Nᵢ dA: the nodal forces of a unit pressure. Zero at the corners of a flat six-node face.
     Consistent,
     /// In proportion to ∫ Nᵢ² dA, the sum kept: positive at every node.
     Positive,
-    /// To three nodes alone, corners of a three-node face and middles of a six-node one: ∫ Nᵢ dA, and
-    /// what that gives a curved face's corners dealt to its middles so that not only the area but the
-    /// integral of all that is linear over the face (in its own coordinates) is kept. Then the middle
-    /// between corners i and j has ∫ (λᵢ + λⱼ − λₖ) dA: a third of the face where it is flat.
+    /// To three nodes only: the corners of a three-node face, by ∫ Nᵢ dA, or the middles of a six-node one. The
+    /// shares of a curved face's corners go to its middles such that the integral of every linear function over
+    /// the face (in its own coordinates) is preserved. The middle between corners i and j then
+    /// has ∫ (λᵢ + λⱼ − λₖ) dA: a third of a flat face.
     ThreeNodes,
 }
 
-/// Seven-point rule on a triangle (Radon 1948), exact to degree five: barycentric places, weights.
+/// Seven-point rule on a triangle (Radon 1948), exact to degree five: barycentric coordinates and weights.
 fn triangle_rule() -> [([f64; 3], f64); 7] {
     let root = 15f64.sqrt();
     let (a, b) = ((6.0 + root) / 21.0, (6.0 - root) / 21.0);
@@ -94,7 +94,7 @@ fn triangle_rule() -> [([f64; 3], f64); 7] {
     ]
 }
 
-/// Shape functions and outward vector area (times its weight) at the places of [`triangle_rule`] on a
+/// Shape functions and outward vector area (times the weight) at the points of [`triangle_rule`] on a
 /// six-node face (corners a, b, c, middles ab, bc, ca).
 pub(super) fn curved_face(points: &[Vector3<f64>; 6]) -> [([f64; 6], Vector3<f64>); 7] {
     triangle_rule().map(|([u, v, w], weight)| {
@@ -143,17 +143,17 @@ fn face_integrals(mesh: &TetMesh, face: Face) -> [[f64; 2]; 6] {
     }
 }
 
-/// Area of one face, m²; of curved faces by a rule of degree five.
+/// Area of one face, m²; for curved faces by a rule of degree five.
 pub fn face_area(mesh: &TetMesh, face: Face) -> f64 {
     face_integrals(mesh, face).iter().map(|sum| sum[0]).sum()
 }
 
-/// Area of faces together, m².
+/// Total area of faces, m².
 pub fn total_area(mesh: &TetMesh, faces: &[Face]) -> f64 {
     faces.iter().map(|&face| face_area(mesh, face)).sum()
 }
 
-/// For every node of the mesh its part of the area of `faces`, m²; their sum is the total area.
+/// Share of every node of the mesh in the area of `faces`, m²; the sum is the total area.
 pub fn tributary_areas(mesh: &TetMesh, faces: &[Face], share: Share) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.nodes.len()];
     for &face in faces {
@@ -177,7 +177,7 @@ fn three_nodes(order: Order, shares: [f64; 6]) -> [f64; 6] {
     if order == Order::Linear {
         return shares;
     }
-    // What is linear has at a corner the sum of its values at the two middles beside it, less that
+    // A linear function has at a corner the sum of its values at the two adjacent middles minus that
     // at the third.
     let [a, b, c, ab, bc, ca] = shares;
     [0.0, 0.0, 0.0, ab + a + b - c, bc + b + c - a, ca + c + a - b]

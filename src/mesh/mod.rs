@@ -1,4 +1,4 @@
-//! Tetrahedral meshes: what they are, where they come from, whether they are any good.
+//! Tetrahedral meshes: data, generators, files, quality and checks.
 //!
 //! | Job | Where |
 //! |---|---|
@@ -10,8 +10,8 @@
 //! | files in and out | [`read`], [`mod@write`] |
 //! | blocks, rings, shafts, housings, cages | [`generate`] |
 //!
-//! Lengths are metres everywhere past the readers. Readers take bytes and writers give bytes:
-//! nothing here opens a file, and nothing knows a scene, a material or a unit string.
+//! Lengths are in metres, except inside the readers. Readers take bytes and writers return bytes:
+//! no file is opened here, and nothing depends on scenes, materials or unit strings.
 pub mod check;
 pub mod cylinder_fit;
 pub mod error;

@@ -1,6 +1,6 @@
-//! The one node order of this program, and how other programs' orders map to it.
+//! Node order of tetrahedra, and conversion from Gmsh's order.
 //!
-//! Corners 0…3 stand so that (p₁ − p₀) × (p₂ − p₀) · (p₃ − p₀) > 0. Mid-side nodes follow in the
+//! Corners 0…3 are ordered such that (p₁ − p₀) × (p₂ − p₀) · (p₃ − p₀) > 0. Mid-side nodes follow in the
 //! order of VTK's quadratic tetrahedron, which is also that of Abaqus and CalculiX (C3D10):
 //!
 //! ```text
@@ -8,17 +8,17 @@
 //! edge  0-1    1-2    0-2    0-3    1-3    2-3
 //! ```
 //!
-//! Gmsh numbers the last two edges the other way round (2-3, then 1-3).
+//! Gmsh numbers the last two edges in the opposite order (2-3, then 1-3).
 
 use crate::mesh::tet_mesh::Order;
 
 /// Corner pairs of the edges whose middles are nodes 4…9.
 pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
-/// Corners of the four sides, seen anticlockwise from outside. Side s is Abaqus' face S(s + 1).
+/// Corners of the four sides, anticlockwise seen from outside. Side s is Abaqus' face S(s + 1).
 pub const SIDES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
-/// The same with the mid-side nodes of the edges a-b, b-c, c-a behind the corners a, b, c.
+/// Corners a, b, c of the four sides, followed by the mid-side nodes of the edges a-b, b-c, c-a.
 const QUADRATIC_SIDES: [[usize; 6]; 4] =
     [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
 
@@ -30,13 +30,13 @@ pub fn side_nodes(order: Order, side: usize) -> &'static [usize] {
     }
 }
 
-/// A ten-node element as Gmsh lists it, in this program's order; its own inverse.
+/// Converts a ten-node element between Gmsh's order and this program's; its own inverse.
 pub fn swap_gmsh<T: Copy>(nodes: [T; 10]) -> [T; 10] {
     let [a, b, c, d, e, f, g, h, i, j] = nodes;
     [a, b, c, d, e, f, g, h, j, i]
 }
 
-/// A ten-node element turned inside out: corners 1 and 2 change places, and the edges with them.
+/// Inverts a ten-node element: swaps corners 1 and 2, and the edges accordingly.
 pub fn flip<T: Copy>(nodes: [T; 10]) -> [T; 10] {
     let [a, b, c, d, ab, bc, ac, ad, bd, cd] = nodes;
     [a, c, b, d, ac, bc, ab, ad, cd, bd]

@@ -1,10 +1,9 @@
-//! Numbering for speed: reverse Cuthill–McKee for nodes (George and Liu 1981), elements after
-//! their lowest node, so that neighbours in space are neighbours in memory.
+//! Renumbering for memory locality: reverse Cuthill–McKee for nodes (George and Liu 1981), elements ordered
+//! by their lowest node.
 
 use crate::mesh::tet_mesh::TetMesh;
 use crate::mesh::topology::{Lists, node_neighbours};
 
-/// A renumbered mesh and where everything went.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Renumbered {
     pub mesh: TetMesh,
@@ -14,7 +13,7 @@ pub struct Renumbered {
     pub element: Vec<u32>,
 }
 
-/// Renumbers nodes and elements; sets go along.
+/// Renumbers nodes and elements, including sets.
 pub fn reverse_cuthill_mckee(mesh: TetMesh) -> Renumbered {
     let mut mesh = mesh;
     let order = cuthill_mckee(&node_neighbours(&mesh));
@@ -58,7 +57,7 @@ pub fn bandwidth(mesh: &TetMesh) -> u32 {
     (0..mesh.elements.len()).map(span).max().unwrap_or(0)
 }
 
-/// Nodes in breadth-first order, neighbours by degree, each part from one of its ends.
+/// Nodes in breadth-first order, neighbours by degree, each connected part from a peripheral node.
 fn cuthill_mckee(neighbours: &Lists) -> Vec<u32> {
     let count = neighbours.starts.len() - 1;
     let degree = |node: u32| neighbours.of(node as usize).len();
@@ -71,7 +70,7 @@ fn cuthill_mckee(neighbours: &Lists) -> Vec<u32> {
             continue;
         }
         let mut next = order.len();
-        let root = far_end(neighbours, start);
+        let root = peripheral_node(neighbours, start);
         placed[root as usize] = true;
         order.push(root);
         while next < order.len() {
@@ -90,21 +89,21 @@ fn cuthill_mckee(neighbours: &Lists) -> Vec<u32> {
     order
 }
 
-/// A node far away from all others of its part: walk to a farthest one until it gets no farther.
-fn far_end(neighbours: &Lists, start: u32) -> u32 {
-    let (mut root, mut reach) = (start, 0);
+/// A pseudo-peripheral node: moves to a farthest node until the depth no longer increases.
+fn peripheral_node(neighbours: &Lists, start: u32) -> u32 {
+    let (mut root, mut greatest) = (start, 0);
     loop {
         let (last_level, depth) = levels(neighbours, root);
-        if depth <= reach {
+        if depth <= greatest {
             return root;
         }
         let least =
             last_level.iter().min_by_key(|&&node| (neighbours.of(node as usize).len(), node));
-        (root, reach) = (*least.unwrap_or(&root), depth);
+        (root, greatest) = (*least.unwrap_or(&root), depth);
     }
 }
 
-/// The nodes farthest from `root`, and how many edges away they are.
+/// Nodes farthest from `root`, and their distance in edges.
 fn levels(neighbours: &Lists, root: u32) -> (Vec<u32>, usize) {
     let mut seen = vec![false; neighbours.starts.len() - 1];
     seen[root as usize] = true;

@@ -1,4 +1,4 @@
-//! From four-node to ten-node elements, with mid-side nodes on the true curved surfaces.
+//! Conversion of four-node to ten-node elements, with mid-side nodes on the exact curved surfaces.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::measure::{least_jacobian, straight_volume};
@@ -9,29 +9,29 @@ use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
 use crate::mesh::topology::surface;
 use nalgebra::Vector3;
 
-/// A ten-node mesh, and how many mid-side nodes had to stay off their curved surface because
-/// an element would have folded.
+/// A ten-node mesh, and the number of mid-side nodes that are not on their curved surface because
+/// an element would fold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elevated {
     pub mesh: TetMesh,
     pub pulled_back: usize,
 }
 
-/// An element may lose this part of its straight Jacobian at its worst place before mid-side
-/// nodes are pulled back.
+/// Smallest Jacobian of an element, relative to that with straight edges; below it mid-side
+/// nodes are moved back.
 const LEAST_JACOBIAN: f64 = 0.1;
 
-/// Part of the mesh's size within which a corner counts as lying on a curved surface.
+/// Largest distance of a corner on a curved surface, divided by the mesh's size.
 const ON_SURFACE: f64 = 1e-7;
 
-/// Puts a node on every edge. Edges of boundary faces that lie on one of `curved` get theirs
-/// projected onto it; edges on two of them onto both.
+/// Adds a node on every edge. Those on edges of boundary faces on one of `curved` are
+/// projected onto it, those on two of them onto both.
 ///
 /// Node sets that share a name with a surface set become the nodes of its faces; other node sets
-/// gain the middle of each edge whose two ends they hold.
+/// gain the middle of each edge whose two ends they contain.
 ///
 /// # Errors
-/// [`MeshError::AlreadyQuadratic`]; [`MeshError::TooLarge`] where the nodes cannot be numbered.
+/// [`MeshError::AlreadyQuadratic`]; [`MeshError::TooLarge`] if the nodes cannot be numbered.
 pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError> {
     let boundary = surface(mesh);
     let on = |shape: &Surface| faces_on(mesh, &boundary, shape, ON_SURFACE * mesh.size());
@@ -39,23 +39,23 @@ pub fn elevate(mesh: &TetMesh, curved: &[Surface]) -> Result<Elevated, MeshError
     elevate_faces(mesh, &curved)
 }
 
-/// The same where every layer of cells is curved about the X axis, between its boundaries too: an edge's node stands at the mean
-/// radius, angle and x of its ends. So no element folds where a layer is thinner than the arc of a cell is high. No node lies on the
-/// axis, and no edge across it.
+/// As [`elevate`], with every layer of cells curved about the X axis, also inside the body: an edge's node is at the mean
+/// radius, angle and x of its ends. Thus no element folds if a layer is thinner than the arc height of a cell. No node may be on
+/// the axis, and no edge may cross it.
 ///
 /// # Errors
 /// Those of [`elevate`].
 pub fn elevate_about_x(mesh: &TetMesh) -> Result<Elevated, MeshError> {
     elevate_by(mesh, &[], |a, b| {
         let [from, to] = [a, b].map(|end| libm::hypot(end.y, end.z));
-        // The direction halfway is that of the sum of both directions.
+        // The mean angle is that of the sum of both directions.
         let [y, z] = [a.y / from + b.y / to, a.z / from + b.z / to];
         let radius = 0.5 * (from + to) / libm::hypot(y, z);
         Vector3::new(0.5 * (a.x + b.x), radius * y, radius * z)
     })
 }
 
-/// The same for surfaces with the faces that lie on each.
+/// As [`elevate`], for surfaces with the faces on each.
 ///
 /// # Errors
 /// Those of [`elevate`].
@@ -66,7 +66,7 @@ pub fn elevate_faces(
     elevate_by(mesh, curved, |a, b| (a + b) * 0.5)
 }
 
-/// The same from where the nodes of edges stand that lie on no surface.
+/// As [`elevate`], from given positions of the mid-side nodes that are on no surface.
 fn elevate_by(
     mesh: &TetMesh,
     curved: &[(Surface, Vec<Face>)],
@@ -85,7 +85,7 @@ fn elevate_by(
     if first.checked_add(u32::try_from(edges.len()).unwrap_or(u32::MAX)).is_none() {
         return Err(MeshError::TooLarge { count: mesh.nodes.len() + edges.len() });
     }
-    // Every edge asked for is in the list it is looked for in.
+    // Every edge is in the list.
     let middle_of = |a: u32, b: u32| edges.binary_search(&sorted(a, b)).unwrap_or(0);
 
     let straight: Vec<Vector3<f64>> =
@@ -144,7 +144,7 @@ fn sorted(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Projection onto several surfaces in turn; they cross at large angles, so this converges fast.
+/// Alternating projection onto several surfaces; they intersect at large angles, so it converges fast.
 fn onto_all(place: Vector3<f64>, surfaces: &[Surface]) -> Vector3<f64> {
     const ROUNDS: usize = 60;
     let mut place = place;
@@ -157,8 +157,8 @@ fn onto_all(place: Vector3<f64>, surfaces: &[Surface]) -> Vector3<f64> {
     place
 }
 
-/// Moves mid-side nodes half way back to their edges, again and again, wherever an element is
-/// folded or nearly so; at last onto the edge itself. Returns how many nodes were moved.
+/// Moves mid-side nodes of elements that are folded or nearly so half way back to their edges,
+/// repeatedly, and finally onto the edge. Returns the number of moved nodes.
 fn unfold(
     mesh: &TetMesh,
     elements: &[[u32; 10]],

@@ -1,30 +1,29 @@
-//! How good a mesh is: aspect, radius ratio, dihedral angles, each with its worst element.
+//! Mesh quality: aspect ratio, radius ratio and dihedral angles, each with its worst element.
 //!
-//! Measures are of the straight tetrahedron through the corners; all but lengths and volumes are
-//! free of scale.
+//! Measures are those of the straight tetrahedron through the corners; all but lengths and volumes are
+//! dimensionless.
 
 use crate::mesh::measure::{straight_volume, volume};
 use crate::mesh::node_order::{EDGES, SIDES};
 use crate::mesh::tet_mesh::TetMesh;
 use nalgebra::Vector3;
 
-/// A value and the element that has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
     pub value: f64,
     pub element: u32,
 }
 
-/// Report on a whole mesh. Lengths in m, angles in rad.
+/// Quality of a mesh. Lengths in m, angles in rad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     pub node_count: usize,
     pub element_count: usize,
     pub total_volume: f64,
     pub least_volume: Worst,
-    /// Largest longest edge / (2√6 · radius of the inscribed sphere): 1 for a regular tetrahedron.
+    /// Largest aspect ratio, longest edge / (2√6 · radius of the inscribed sphere): 1 for a regular tetrahedron.
     pub aspect: Worst,
-    /// Least 3 · inscribed / circumscribed radius: 1 for a regular tetrahedron, 0 for a flat one.
+    /// Least radius ratio, 3 · inscribed / circumscribed radius: 1 for a regular tetrahedron, 0 for a flat one.
     pub radius_ratio: Worst,
     pub least_dihedral: Worst,
     pub greatest_dihedral: Worst,
@@ -43,7 +42,7 @@ pub struct Shape {
     pub longest_edge: f64,
 }
 
-/// Measures of the tetrahedron with these corners; aspect is infinite where it is flat.
+/// Measures of the tetrahedron with these corners; the aspect ratio of a flat one is infinite.
 pub fn shape(points: [Vector3<f64>; 4]) -> Shape {
     let lengths = EDGES.map(|[a, b]| (points[b] - points[a]).norm());
     let shortest_edge = lengths.into_iter().fold(f64::INFINITY, f64::min);
@@ -52,14 +51,14 @@ pub fn shape(points: [Vector3<f64>; 4]) -> Shape {
     let normals = SIDES.map(|[a, b, c]| (points[b] - points[a]).cross(&(points[c] - points[a])));
     let area: f64 = normals.iter().map(|n| 0.5 * n.norm()).sum();
     let inscribed = 3.0 * volume / area;
-    // 24 · volume · circumscribed radius = the root of a product over opposite edges (Crelle).
+    // 24 · volume · circumscribed radius = square root of a product over opposite edges (Crelle).
     let [p, q, r] = [lengths[0] * lengths[5], lengths[1] * lengths[3], lengths[2] * lengths[4]];
     let product = (p + q + r) * (p + q - r) * (p - q + r) * (q + r - p);
     let circumscribed = product.max(0.0).sqrt() / (24.0 * volume);
     let (mut least_dihedral, mut greatest_dihedral) = (f64::INFINITY, 0.0f64);
     for a in 0..4 {
         for b in a + 1..4 {
-            // Outward normals enclose the supplement of the angle inside.
+            // The angle between outward normals is the supplement of the dihedral angle.
             let sine = normals[a].cross(&normals[b]).norm();
             let angle = libm::atan2(sine, -normals[a].dot(&normals[b]));
             least_dihedral = least_dihedral.min(angle);
@@ -76,7 +75,7 @@ pub fn shape(points: [Vector3<f64>; 4]) -> Shape {
     }
 }
 
-/// The report on `mesh`, which has at least one element.
+/// Quality of `mesh`, which has at least one element.
 pub fn quality(mesh: &TetMesh) -> Quality {
     let least = || Worst { value: f64::INFINITY, element: 0 };
     let greatest = || Worst { value: f64::NEG_INFINITY, element: 0 };
@@ -99,7 +98,7 @@ pub fn quality(mesh: &TetMesh) -> Quality {
                 *worst = Worst { value, element };
             }
         };
-        // A flat element has no aspect (0/0): that is worse than any.
+        // The aspect ratio of a flat element is 0/0; it counts as the worst.
         let higher = |worst: &mut Worst, value: f64| {
             let value = if value.is_nan() { f64::INFINITY } else { value };
             if value > worst.value {

@@ -1,22 +1,21 @@
-//! Repairs, each done only where it was asked for, and reported.
+//! Repairs of meshes, each done only on request and reported.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::measure::straight_volume;
 use crate::mesh::tet_mesh::TetMesh;
 use std::collections::HashMap;
 
-/// What may be done to a mesh. Nothing by default.
+/// Requested repairs; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Repair {
-    /// Turn inverted elements the right way round.
+    /// Reorient inverted elements.
     pub orient: bool,
-    /// Join nodes closer than this many metres.
+    /// Merge nodes closer than this distance, m.
     pub merge_duplicates: Option<f64>,
     /// Remove nodes that belong to no element.
     pub drop_unreferenced: bool,
 }
 
-/// What was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repaired {
     pub turned_elements: usize,
@@ -24,10 +23,10 @@ pub struct Repaired {
     pub dropped_nodes: usize,
 }
 
-/// Merges, then turns, then drops, as far as asked.
+/// Repairs a mesh in the order merge, reorient, remove.
 ///
 /// # Errors
-/// [`MeshError::Collapsed`] where merging would join two nodes of one element.
+/// [`MeshError::Collapsed`] if merging would join two nodes of one element.
 pub fn repair(mesh: TetMesh, wanted: &Repair) -> Result<(TetMesh, Repaired), MeshError> {
     let mut mesh = mesh;
     let mut done = Repaired::default();
@@ -43,9 +42,9 @@ pub fn repair(mesh: TetMesh, wanted: &Repair) -> Result<(TetMesh, Repaired), Mes
     Ok((mesh, done))
 }
 
-/// For each node the first node within `tolerance` of it, itself where there is none before it.
+/// First node within `tolerance` of each node; the node itself if there is none before it.
 ///
-/// Space is cut into cells; a node looks only into the cells its tolerance reaches.
+/// Space is divided into cells, and only cells within the tolerance are searched.
 pub fn coincident_nodes(nodes: &[[f64; 3]], tolerance: f64) -> Vec<u32> {
     let cell = if tolerance > 0.0 { 8.0 * tolerance } else { f64::MIN_POSITIVE };
     let index = |x: f64| (x / cell).floor() as i64;
@@ -102,7 +101,7 @@ fn orient(mesh: &mut TetMesh) -> usize {
     for index in (0..turned.len()).filter(|&index| turned[index]) {
         mesh.elements.flip(index);
     }
-    // Corners 1 and 2 changed places: sides {0, 1, 3} and {0, 2, 3} did too.
+    // Corners 1 and 2 are swapped, and with them sides {0, 1, 3} and {0, 2, 3}.
     for face in mesh.surface_sets.values_mut().flatten() {
         if turned[face.element as usize] {
             face.side = [0, 3, 2, 1][face.side as usize];
@@ -119,7 +118,7 @@ fn drop_unreferenced(mesh: &mut TetMesh) -> usize {
     keep_nodes(mesh, |node| used[node])
 }
 
-/// Removes the other nodes and closes the gaps in the numbers; says how many went.
+/// Removes the other nodes and closes the gaps in the numbers; returns the number of removed nodes.
 fn keep_nodes(mesh: &mut TetMesh, keep: impl Fn(usize) -> bool) -> usize {
     let before = mesh.nodes.len();
     let mut next = 0;
@@ -135,8 +134,8 @@ fn keep_nodes(mesh: &mut TetMesh, keep: impl Fn(usize) -> bool) -> usize {
 }
 
 impl TetMesh {
-    /// Gives node i the number `new_index[i]`; nodes without one vanish, from the sets too. No
-    /// element may use them, and the new numbers are 0, 1, … without gaps.
+    /// Renumbers node i to `new_index[i]`; nodes without a new number are removed, also from sets. No
+    /// element may use them, and the new numbers must be 0, 1, … without gaps.
     pub(crate) fn renumber_nodes(&mut self, new_index: &[Option<u32>]) {
         let count = new_index.iter().flatten().count();
         let mut nodes = vec![[0.0; 3]; count];

@@ -1,4 +1,4 @@
-//! Sets by geometry: nodes in a box or on a surface, boundary faces on a surface.
+//! Selection by geometry: nodes in a box or on a surface, boundary faces on a surface.
 
 use crate::mesh::error::{MeshError, place, six_digits};
 use crate::mesh::measure::face_normal;
@@ -7,17 +7,17 @@ use crate::mesh::tet_mesh::{Face, TetMesh};
 use nalgebra::Vector3;
 use std::fmt;
 
-/// Where nodes are looked for. Lengths in m.
+/// Region for the selection of nodes. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Region {
-    /// Between two corners, faces included.
+    /// A box between two corners, faces included.
     Box { low: [f64; 3], high: [f64; 3] },
-    /// Within `tolerance` of a surface.
+    /// The neighbourhood of a surface, within `tolerance`.
     On { surface: Surface, tolerance: f64 },
 }
 
 impl Region {
-    /// How far outside the region a place is, m; 0 within.
+    /// Distance of a point from the region, m; 0 inside.
     fn outside(&self, place: Vector3<f64>) -> f64 {
         match self {
             Region::Box { low, high } => {
@@ -42,14 +42,14 @@ impl fmt::Display for Region {
 
 /// Nodes in a region, ascending.
 pub fn nodes_in(mesh: &TetMesh, region: &Region) -> Vec<u32> {
-    // Through `<=`, so that a distance that is not a number selects nothing.
+    // `<=`, so that NaN selects nothing.
     let inside = |&node: &u32| region.outside(mesh.point(node)) <= 0.0;
     (0..mesh.nodes.len() as u32).filter(inside).collect()
 }
 
-/// Those of `boundary` (faces from [`surface`](crate::mesh::topology::surface)) that lie on
-/// `surface`: their corners within `tolerance`, and their normals along its own. Without the second
-/// condition a triangle of an end face whose three corners touch the rim would pass.
+/// Faces of `boundary` (from [`surface`](crate::mesh::topology::surface)) on
+/// `surface`: corners within `tolerance` and normals along its own. The second condition
+/// excludes a triangle of an end face with three corners on the rim.
 pub fn faces_on(mesh: &TetMesh, boundary: &[Face], surface: &Surface, tolerance: f64) -> Vec<Face> {
     let lies_on = |&face: &Face| {
         let corners = mesh.face_corners(face).map(|node| mesh.point(node));
@@ -62,7 +62,7 @@ pub fn faces_on(mesh: &TetMesh, boundary: &[Face], surface: &Surface, tolerance:
 }
 
 impl TetMesh {
-    /// Adds the node set `name` and says how many nodes it has.
+    /// Adds the node set `name` and returns its number of nodes.
     ///
     /// # Errors
     /// [`MeshError::EmptySet`] with the distance of the nearest node.
@@ -80,7 +80,7 @@ impl TetMesh {
     ///
     /// # Errors
     /// [`MeshError::EmptySet`] with the distance of the nearest node, [`MeshError::NoSurfaceThere`]
-    /// where only nodes lie on `surface`.
+    /// if only nodes are on `surface`.
     pub fn add_surface_set(
         &mut self,
         name: &str,
@@ -106,7 +106,7 @@ impl TetMesh {
     }
 
     /// Adds the nodes of a symmetry plane as node set `name`. A plane that cuts through the mesh
-    /// instead of bounding it is refused.
+    /// is refused.
     ///
     /// # Errors
     /// [`MeshError::EmptySet`], and [`MeshError::Dimension`] for a plane with nodes on both sides.
@@ -126,7 +126,7 @@ impl TetMesh {
                 what: "extent behind the symmetry plane",
                 value: high.min(-low),
                 unit: " m",
-                allowed: format!("0 to {tolerance:e} m: the mesh must lie on one side"),
+                allowed: format!("0 to {tolerance:e} m, the mesh on one side of the plane"),
             });
         }
         let surface = Surface::Plane { point, normal };

@@ -1,4 +1,4 @@
-//! Planes, cylinders and cones that nodes may lie on.
+//! Planes, cylinders and cones for nodes.
 
 use crate::mesh::error::{place, six_digits};
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ pub enum Surface {
         axis: [f64; 3],
         radius: f64,
     },
-    /// Radius `radius` at `point`, growing by `slope` per metre along the axis.
+    /// A cone with radius `radius` at `point` that grows by `slope` per metre along the axis.
     Cone {
         point: [f64; 3],
         axis: [f64; 3],
@@ -25,9 +25,9 @@ pub enum Surface {
     },
 }
 
-/// A place in the coordinates of a surface of revolution.
+/// A point in the coordinates of a surface of revolution.
 pub(crate) struct Polar {
-    /// Unit axis and unit radial direction.
+    /// Unit vectors along the axis and in radial direction.
     axis: Vector3<f64>,
     pub outward: Vector3<f64>,
     pub along: f64,
@@ -56,7 +56,7 @@ impl Surface {
         Surface::Plane { point, normal }
     }
 
-    /// Distance from the surface, m; for a cone measured square to its axis.
+    /// Distance from the surface, m; for a cone measured normal to its axis.
     pub fn distance(&self, place: Vector3<f64>) -> f64 {
         match *self {
             Surface::Plane { point, normal } => {
@@ -72,7 +72,7 @@ impl Surface {
         }
     }
 
-    /// The surface's unit normal near `place`.
+    /// Unit normal of the surface near `place`.
     pub fn normal(&self, place: Vector3<f64>) -> Vector3<f64> {
         match *self {
             Surface::Plane { normal, .. } => Vector3::from(normal).normalize(),
@@ -84,7 +84,7 @@ impl Surface {
         }
     }
 
-    /// The point of the surface square to its plane or axis from `place`.
+    /// Projection of `place` onto the surface, normal to its plane or axis.
     pub fn project(&self, place: Vector3<f64>) -> Vector3<f64> {
         match *self {
             Surface::Plane { point, normal } => {
@@ -107,7 +107,7 @@ impl fmt::Display for Surface {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Surface::Plane { point, normal } => {
-                write!(f, "plane through {} square to {normal:?}", place(point))
+                write!(f, "plane through {} normal to {normal:?}", place(point))
             }
             Surface::Cylinder { point, axis, radius } => {
                 let radius = six_digits(*radius);

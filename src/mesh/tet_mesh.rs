@@ -5,14 +5,14 @@ use crate::mesh::node_order::{SIDES, flip, side_nodes};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// Four nodes with straight edges, or ten with a node on each edge.
+/// Order of the elements: four nodes with straight edges, or ten with a node on each edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     Linear,
     Quadratic,
 }
 
-/// Nodes of each element, in the order of [`node_order`](crate::mesh::node_order).
+/// Elements by their nodes, in the order of [`node_order`](crate::mesh::node_order).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Elements {
     Linear(Vec<[u32; 4]>),
@@ -52,7 +52,7 @@ impl Elements {
         [nodes[0], nodes[1], nodes[2], nodes[3]]
     }
 
-    /// Every element's nodes, one element after the other.
+    /// Nodes of all elements, concatenated.
     pub fn all_nodes(&self) -> &[u32] {
         match self {
             Elements::Linear(list) => list.as_flattened(),
@@ -67,7 +67,7 @@ impl Elements {
         }
     }
 
-    /// The elements `order[0]`, `order[1]`, … in that order.
+    /// The elements reordered as `order[0]`, `order[1]`, ….
     pub(crate) fn picked(&self, order: &[u32]) -> Elements {
         match self {
             Elements::Linear(list) => {
@@ -79,7 +79,7 @@ impl Elements {
         }
     }
 
-    /// Turns element `index` inside out, which changes the sign of its volume.
+    /// Inverts element `index`, which changes the sign of its volume.
     pub(crate) fn flip(&mut self, index: usize) {
         match self {
             Elements::Linear(list) => list[index].swap(1, 2),
@@ -88,14 +88,14 @@ impl Elements {
     }
 }
 
-/// One side (0…3) of one element; [`SIDES`] says which corners it has.
+/// One side (0…3) of one element, with the corners of [`SIDES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Face {
     pub element: u32,
     pub side: u8,
 }
 
-/// Nodes, elements and named sets of them. Lengths in m.
+/// A tetrahedral mesh: nodes, elements and named sets of them. Lengths in m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TetMesh {
     pub nodes: Vec<[f64; 3]>,
@@ -106,11 +106,11 @@ pub struct TetMesh {
 }
 
 impl TetMesh {
-    /// A mesh without sets.
+    /// Creates a mesh without sets.
     ///
     /// # Errors
-    /// [`MeshError::NoElements`], [`MeshError::NodeOutOfRange`] where an element names a node that
-    /// is not there, [`MeshError::NotFinite`], [`MeshError::TooLarge`] beyond 2³² − 1 nodes.
+    /// [`MeshError::NoElements`], [`MeshError::NodeOutOfRange`] if an element refers to a missing
+    /// node, [`MeshError::NotFinite`], [`MeshError::TooLarge`] above 2³² − 1 nodes.
     pub fn new(nodes: Vec<[f64; 3]>, elements: Elements) -> Result<TetMesh, MeshError> {
         if elements.is_empty() {
             return Err(MeshError::NoElements);
@@ -160,7 +160,7 @@ impl TetMesh {
         SIDES[face.side as usize].map(|local| corners[local])
     }
 
-    /// All nodes of a face: three corners, then three mid-side nodes where there are any.
+    /// All nodes of a face: three corners, then three mid-side nodes if the mesh has any.
     pub fn face_nodes(&self, face: Face) -> impl Iterator<Item = u32> + '_ {
         let nodes = self.elements.nodes(face.element as usize);
         side_nodes(self.order(), face.side as usize).iter().map(move |&local| nodes[local])
@@ -193,19 +193,19 @@ impl TetMesh {
     }
 
     /// # Errors
-    /// [`MeshError::NoSuchSet`] with the names there are.
+    /// [`MeshError::NoSuchSet`] with the existing names.
     pub fn node_set(&self, name: &str) -> Result<&[u32], MeshError> {
         named(&self.node_sets, name, "node")
     }
 
     /// # Errors
-    /// [`MeshError::NoSuchSet`] with the names there are.
+    /// [`MeshError::NoSuchSet`] with the existing names.
     pub fn element_set(&self, name: &str) -> Result<&[u32], MeshError> {
         named(&self.element_sets, name, "element")
     }
 
     /// # Errors
-    /// [`MeshError::NoSuchSet`] with the names there are.
+    /// [`MeshError::NoSuchSet`] with the existing names.
     pub fn surface_set(&self, name: &str) -> Result<&[Face], MeshError> {
         named(&self.surface_sets, name, "surface")
     }

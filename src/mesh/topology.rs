@@ -1,9 +1,9 @@
-//! Who touches whom: the surface, node neighbours, connected parts.
+//! Topology of a mesh: the surface, neighbours of nodes, connected parts.
 
 use crate::mesh::tet_mesh::{Face, TetMesh};
 
-/// Every face of the mesh with its sorted corners, ordered by these: a face between two elements
-/// stands there twice in a row.
+/// Every face of the mesh with its sorted corners, ordered by these; a face between two elements
+/// occurs twice in a row.
 pub fn sorted_faces(mesh: &TetMesh) -> Vec<([u32; 3], Face)> {
     let mut faces = Vec::with_capacity(4 * mesh.elements.len());
     for element in 0..mesh.elements.len() as u32 {
@@ -18,7 +18,7 @@ pub fn sorted_faces(mesh: &TetMesh) -> Vec<([u32; 3], Face)> {
     faces
 }
 
-/// Faces that belong to one element alone, in the order of elements and sides.
+/// Boundary faces, which belong to one element only, in the order of elements and sides.
 pub fn surface(mesh: &TetMesh) -> Vec<Face> {
     let faces = sorted_faces(mesh);
     let mut free: Vec<Face> = faces
@@ -30,7 +30,7 @@ pub fn surface(mesh: &TetMesh) -> Vec<Face> {
     free
 }
 
-/// Lists of different lengths behind one another: list i is `items[starts[i]..starts[i + 1]]`.
+/// Concatenated lists of different lengths: list i is `items[starts[i]..starts[i + 1]]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lists {
     pub starts: Vec<usize>,
@@ -42,7 +42,7 @@ impl Lists {
         &self.items[self.starts[index]..self.starts[index + 1]]
     }
 
-    /// Sorts pairs (list, item) into lists without repetitions.
+    /// Sorts pairs (list, item) into lists without duplicates.
     fn from_pairs(mut pairs: Vec<(u32, u32)>, lists: usize) -> Lists {
         pairs.sort_unstable();
         pairs.dedup();
@@ -57,7 +57,7 @@ impl Lists {
     }
 }
 
-/// For each node the other nodes of its elements, ascending.
+/// Neighbours of each node: the other nodes of its elements, ascending.
 pub fn node_neighbours(mesh: &TetMesh) -> Lists {
     let mut pairs = Vec::new();
     for element in 0..mesh.elements.len() {
@@ -69,7 +69,7 @@ pub fn node_neighbours(mesh: &TetMesh) -> Lists {
     Lists::from_pairs(pairs, mesh.nodes.len())
 }
 
-/// For each node the elements it belongs to, ascending.
+/// Elements of each node, ascending.
 pub fn node_elements(mesh: &TetMesh) -> Lists {
     let per_element = mesh.elements.nodes(0).len();
     let nodes = mesh.elements.all_nodes().iter().enumerate();
@@ -77,7 +77,7 @@ pub fn node_elements(mesh: &TetMesh) -> Lists {
     Lists::from_pairs(pairs, mesh.nodes.len())
 }
 
-/// Disjoint sets that grow together.
+/// Disjoint sets (union-find).
 pub(crate) struct Union(Vec<u32>);
 
 impl Union {
@@ -94,7 +94,7 @@ impl Union {
         of
     }
 
-    /// The smaller root stays, so that results do not depend on the order of joins.
+    /// Joins two sets. The smaller root remains, so that results do not depend on the order of joins.
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b) as usize] = a.min(b);

@@ -1,4 +1,4 @@
-//! What part of a surface's vector area each node carries: minus the nodal forces of unit pressure.
+//! Distribution of a surface's vector area to nodes: minus the nodal forces of unit pressure.
 
 use crate::mesh::measure::{curved_face, face_normal};
 use crate::mesh::tet_mesh::{Face, Order, TetMesh};
@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 /// ∫ Nᵢ n dA over `faces` for every node of the mesh, outward, m². Zero in sum over a closed
 /// surface.
 ///
-/// Exact, for curved faces too: shape function and normal are of degree two each, the rule of five.
+/// Exact for curved faces too: shape function and normal have degree two each, the rule degree five.
 pub fn vector_areas(mesh: &TetMesh, faces: &[Face]) -> Vec<[f64; 3]> {
     let mut areas = vec![[0.0; 3]; mesh.nodes.len()];
     for &face in faces {
@@ -27,7 +27,7 @@ pub fn vector_areas(mesh: &TetMesh, faces: &[Face]) -> Vec<[f64; 3]> {
     areas
 }
 
-/// The same for the corners and then the middles of one six-node face.
+/// ∫ Nᵢ n dA for the corners and then the middles of one six-node face, m².
 fn curved_shares(mesh: &TetMesh, face: Face) -> [Vector3<f64>; 6] {
     let mut points = [Vector3::zeros(); 6];
     for (point, node) in points.iter_mut().zip(mesh.face_nodes(face)) {

@@ -1,10 +1,10 @@
-//! What can be wrong with a scene. Every error says what, where, what is allowed and what to do.
+//! Errors of scenes. Every message states the position, the problem, the allowed values and a hint.
 
 use crate::scene::text::units::Dimension;
 use std::fmt;
 use thiserror::Error;
 
-/// Where in the input: file name, and line and column where they exist, counted from 1.
+/// Position in the input: file name, and line and column, if any, counted from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     pub file: String,
@@ -27,12 +27,12 @@ impl fmt::Display for Place {
     }
 }
 
-/// The first thing wrong with a scene.
+/// First error of a scene.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{place}: {}{problem}", prefix(key))]
 pub struct SceneError {
     pub place: Place,
-    /// Dotted key, empty if the file as a whole is meant.
+    /// Dotted key; empty for the file as a whole.
     pub key: String,
     pub problem: Box<Problem>,
 }
@@ -53,7 +53,7 @@ impl SceneError {
     }
 }
 
-/// A text from the user's file, cut to a length that fits a message, without control characters.
+/// A text from the user's file for a message: at most 60 characters, without control characters.
 pub(crate) fn shortened(text: &str) -> String {
     const LONGEST: usize = 60;
     let mut short: String =
@@ -95,7 +95,7 @@ fn hint(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!(". Hint: {text}") }
 }
 
-/// What is wrong. Lengths in m; `written` is the value as it stands in the file.
+/// Problem of a scene. Lengths in m; `written` is the value as written in the file.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Problem {
     #[error("there is no such file. Hint: check the path and the folder you are in")]
@@ -104,7 +104,7 @@ pub enum Problem {
     IsFolder,
     #[error("this is not a regular file. Hint: give a .toml or .json file")]
     NotRegularFile,
-    #[error("cannot be read: {reason}. Hint: check who may read the file")]
+    #[error("cannot be read: {reason}. Hint: check the file's permissions")]
     Unreadable { reason: String },
     #[error(
         "has {bytes} bytes. Allowed: up to {limit} bytes. Hint: a scene is a few kilobytes; \
@@ -117,12 +117,12 @@ pub enum Problem {
     UnknownFormat,
     #[error("the file is empty. Hint: the smallest scene has a [bearing] table, see docs/scene.md")]
     Empty,
-    #[error("not UTF-8 text from here on. Hint: save the file as UTF-8{0}", if *.utf16 { " (it looks like UTF-16)" } else { "" })]
+    #[error("not valid UTF-8 from here on. Hint: save the file as UTF-8{0}", if *.utf16 { " (it looks like UTF-16)" } else { "" })]
     NotUtf8 { utf16: bool },
-    #[error("a NUL byte. Hint: this is not a text file, or it was damaged in transfer")]
+    #[error("a NUL byte. Hint: this is not a text file, or it is damaged")]
     NulByte,
     #[error(
-        "nested deeper than {limit} levels. Allowed: up to {limit}. Hint: a scene needs four; look for unclosed brackets and long dotted keys"
+        "nested deeper than {limit} levels. Allowed: up to {limit}. Hint: a scene needs four; check for unclosed brackets and long dotted keys"
     )]
     TooDeep { limit: usize },
     #[error("not valid {format}: {message}{}", hint(.advice))]
@@ -138,7 +138,7 @@ pub enum Problem {
     #[error("expected {expected}, found {found}{}", hint(.advice))]
     WrongKind { expected: String, found: String, advice: String },
     #[error(
-        "{written} has no unit, and this is {}. Allowed units: {}. Hint: write \"{number} {suggested}\" if that is what you mean",
+        "{written} has no unit, but this is {}. Allowed units: {}. Hint: write for instance \"{number} {suggested}\"",
         .dimension.name(), .dimension.unit_list()
     )]
     MissingUnit { written: String, number: String, dimension: Dimension, suggested: &'static str },
@@ -190,7 +190,7 @@ pub enum Problem {
     Refused { reason: String, advice: String },
 
     #[error(
-        "the outer race's groove bottom ({outer}) is not outside the inner race's ({inner}). \
+        "the groove bottom of the outer race ({outer}) is not outside that of the inner race ({inner}). \
          Allowed: outer radius more than {inner}. Hint: the radii are measured from the bearing axis; were they exchanged?",
         outer = mm(*.outer), inner = mm(*.inner)
     )]
@@ -212,7 +212,7 @@ pub enum Problem {
     )]
     NominalFarOff { nominal: f64, derived: f64, allowed: f64 },
     #[error(
-        "the clearance {} closes more than the contact angle leaves. Allowed: more than {}. Hint: check its unit and sign",
+        "the clearance {} is smaller than the contact angle allows. Allowed: more than {}. Hint: check its unit and sign",
         um(*.clearance), um(*.least)
     )]
     InterferenceTooLarge { clearance: f64, least: f64 },
@@ -242,7 +242,7 @@ pub enum Problem {
         advice: &'static str,
     },
     #[error(
-        "the pitch radius {} is not half way between the races. Allowed: {} to {}. Hint: leave it out, it then lies half way",
+        "the pitch radius {} is not half way between the races. Allowed: {} to {}. Hint: leave it out to place it half way",
         mm(*.pitch), mm(*.inner), mm(*.outer)
     )]
     PitchOutsideGap { pitch: f64, inner: f64, outer: f64 },
@@ -259,12 +259,12 @@ pub enum Problem {
     FitTooLarge { fit: f64, limit: f64 },
     #[error(
         "a moment of inertia of {axial} kg m^2 about the axis is more than twice that across it ({transverse} kg m^2), \
-         which no body has. Allowed: up to {} kg m^2. Hint: were the two exchanged?", 2.0 * *.transverse
+         which is impossible for a rigid body. Allowed: up to {} kg m^2. Hint: were the two exchanged?", 2.0 * *.transverse
     )]
     ImpossibleInertia { axial: f64, transverse: f64 },
     #[error(
-        "an unbalance of {unbalance} kg m is more than a body of {mass} kg can have whose moment of inertia about its axis is {axial} \
-         kg m^2. Allowed: less than {:.4e} kg m, the root of their product, where a torque turns it. Hint: check the units of both", (mass * axial).sqrt()
+        "an unbalance of {unbalance} kg m is impossible for a torque-driven body of {mass} kg with an axial moment of inertia of {axial} \
+         kg m^2. Allowed: less than {:.4e} kg m, the square root of their product. Hint: check the units", (mass * axial).sqrt()
     )]
     ImpossibleUnbalance { unbalance: f64, mass: f64, axial: f64 },
     #[error(
@@ -291,7 +291,7 @@ pub enum Problem {
     )]
     NotSweepable,
     #[error(
-        "this key stands in a list of tables. Hint: say in which of them by its number, counted from 1, such as {example}"
+        "this key is in a list of tables. Hint: give the number of the table, counted from 1, as in {example}"
     )]
     WhichItem { example: String },
     #[error(

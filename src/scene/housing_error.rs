@@ -1,4 +1,4 @@
-//! What can be wrong with a housing and its bore.
+//! Errors of a housing and its bore.
 
 use crate::scene::build::about::About;
 use crate::scene::build::solid::SolidSetupError;
@@ -6,8 +6,8 @@ use crate::solids::model::SolidError;
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
-/// What the nodes under the race may stand for, as a part of the bore that it covers: two rows of nodes at
-/// its edges and one between give 1.5 in a longer bore, and 0.5 where those at its edges are missed.
+/// Allowed ratio of the area represented by the contact nodes to the bore area under the race. In a longer
+/// bore, two rows of nodes at the race's edges and one between give 1.5, and 0.5 without those at the edges.
 pub(crate) const SHARES: RangeInclusive<f64> = 0.6..=1.6;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum HousingSetupError {
@@ -16,100 +16,100 @@ pub enum HousingSetupError {
     #[error(transparent)]
     Model(#[from] SolidError),
     #[error(
-        "housing.bore: the solid has no surface called \"{bore}\"; its surfaces are: {}. Hint: a ring's \
-         bore is called \"inner\"",
+        "housing.bore: the solid has no surface \"{bore}\"; its surfaces are: {}. Hint: the bore of a ring \
+         is \"inner\"",
         list(known)
     )]
     NoBore { bore: String, known: Vec<String> },
     #[error(
-        "housing.width: none of the {count} nodes of the bore lies under the outer race, which is \
-         {:.4} mm wide about x = {:.4} mm: {lies}. Hint: {MOVE}; check width, position and the mesh's unit, too",
+        "housing.width: none of the {count} nodes of the bore is under the outer race, which is \
+         {:.4} mm wide and centred at x = {:.4} mm: {lies}. Hint: {MOVE}; also check width, position and the mesh's unit",
         1e3 * *.width, 1e3 * *.centre
     )]
     BesideTheRace { count: usize, width: f64, centre: f64, lies: Lies },
     #[error(
-        "housing.bore: \"{bore}\" is flat: its {faces} faces, {:.4} mm^2, all look along ({:.3}, {:.3}, {:.3}). A bore \
-         is a cylinder about the race's axis. The solid's surfaces are: {}",
+        "housing.bore: \"{bore}\" is flat: all its {faces} faces, {:.4} mm^2, have the normal ({:.3}, {:.3}, {:.3}). Name \
+         a cylinder about the race's axis; the solid's surfaces are: {}",
         1e6 * *.area, normal[0], normal[1], normal[2], list(known)
     )]
     FlatBore { bore: String, faces: usize, area: f64, normal: [f64; 3], known: Vec<String> },
     #[error(
-        "housing.bore: the bore has a radius of {:.4} mm, the outer race one of about {:.4} mm. Hint: was \
+        "housing.bore: the bore has a radius of {:.4} mm, but the outer race about {:.4} mm. Hint: is \
          the mesh's unit (solid.mesh.unit) mm or m? Is \"{bore}\" the right surface?",
         1e3 * *.radius, 1e3 * *.race
     )]
     FarFromTheRace { bore: String, radius: f64, race: f64 },
     #[error(
-        "housing.bore: nodes of \"{bore}\" are {:.4} to {:.4} mm from the bearing's axis, X through its \
-         centre: no bore about it; {lies}. Hint: {MOVE}; check the name of the surface, too",
+        "housing.bore: nodes of \"{bore}\" are {:.4} to {:.4} mm from the bearing's axis (along X through its \
+         centre), which is not a bore about it; {lies}. Hint: {MOVE}; also check the name of the surface",
         1e3 * *.nearest, 1e3 * *.farthest
     )]
     NotRound { bore: String, nearest: f64, farthest: f64, lies: Lies },
     #[error(
-        "housing.bore: the edges of \"{bore}\" are straight: its mid-side nodes, where the race touches, lie \
-         up to {:.3} um inside the cylinder of radius {:.4} mm through its corners; edges this long have arcs \
+        "housing.bore: the edges of \"{bore}\" are straight: its mid-side nodes, where the race touches, are \
+         up to {:.3} um inside the cylinder of radius {:.4} mm through its corners; the arcs of these edges are \
          {:.3} um high, of which {:.0} % is missing. Hint: mesh it with curved edges (in Gmsh \
-         Mesh.SecondOrderLinear = 0, and Mesh.HighOrderOptimize = 0 if that pulled them straight), or save \
-         it with elements of first order and write order = 2 in [solid.mesh]",
+         Mesh.SecondOrderLinear = 0, and Mesh.HighOrderOptimize = 0 if that straightened them), or save \
+         it with first-order elements and write order = 2 in [solid.mesh]",
         1e6 * *.inside, 1e3 * *.radius, 1e6 * *.sagitta, 1e2 * *.missing
     )]
     StraightBore { bore: String, radius: f64, inside: f64, sagitta: f64, missing: f64 },
     #[error(
-        "housing.bore: nodes of \"{bore}\" are up to {:.3} um off its cylinder of radius {:.4} mm, more than \
-         the {:.3} um of a bore to IT7. Hint: has the set faces beside the bore? Are its nodes written with \
-         all digits, its mid-side nodes on the curved surface?",
+        "housing.bore: nodes of \"{bore}\" are up to {:.3} um off its cylinder of radius {:.4} mm; allowed: \
+         {:.3} um, as for IT7. Hint: does the set contain faces outside the bore? Are coordinates written with \
+         all digits, and mid-side nodes on the curved surface?",
         1e6 * *.off, 1e3 * *.radius, 1e6 * *.limit
     )]
     OutOfRound { bore: String, radius: f64, off: f64, limit: f64 },
     #[error(
-        "housing.width: nodes of the bore stand for {share:.2} of the seat of a race {:.4} mm wide, and it \
-         should be {} to {}{}",
+        "housing.width: contact nodes represent {share:.2} of the bore area under a race {:.4} mm wide; \
+         allowed: {} to {}{}",
         1e3 * *.width, SHARES.start(), SHARES.end(), seat_hint(.beside)
     )]
     CoarseSeat { width: f64, share: f64, beside: Option<String> },
     #[error(
-        "housing.width: the {count} nodes of the bore under the outer race, {:.4} mm wide, lie in one row around it, \
-         {:+.4} mm from its middle: nothing there resists its tilt, and it takes two rows at least. Hint: more rows \
-         along the axis (cells.axial of a mesh that is made, or order = 2 in [solid.mesh]), or a width that has two \
-         under it",
+        "housing.width: the {count} nodes of the bore under the outer race, {:.4} mm wide, are in one row around it, \
+         {:+.4} mm from its middle, which cannot resist tilt; at least two rows are needed. Hint: refine the mesh \
+         along the axis (cells.axial of a generated mesh, or order = 2 in [solid.mesh]), or give a width that covers \
+         two rows",
         1e3 * *.width, 1e3 * *.at
     )]
     OneRow { count: usize, width: f64, at: f64 },
     #[error(
-        "housing.bore: all {count} nodes of \"{bore}\" under the race are held by [[solid.fixed]]: the bore cannot \
-         give way, and nothing of the solid counts. AttachedStation another set, or write method = \"rigid\" in [housing]"
+        "housing.bore: all {count} nodes of \"{bore}\" under the race are fixed by [[solid.fixed]], so the bore cannot \
+         deform. Hint: fix another set, or write method = \"rigid\" in [housing]"
     )]
     HeldBore { bore: String, count: usize },
-    #[error("housing: the fit leaves the outer race {:.1} um larger than the bore, more than {:.1} um",
+    #[error("housing: the interference of {:.1} um is too large. Allowed: up to {:.1} um",
         1e6 * *.interference, 1e6 * *.limit)]
     FitTooLarge { interference: f64, limit: f64 },
     #[error(
-        "solid.load: the condensed housing of `quasi-static` takes constant loads; write method = \
+        "solid.load: the housing method `quasi-static` needs constant loads; write method = \
          \"explicit\" in [housing]"
     )]
     VaryingLoad { index: usize },
     #[error(
-        "solid.fixed.{axis}: the housing of `quasi-static` and of `reduced` is held at zero; write \
+        "solid.fixed.{axis}: the housing methods `quasi-static` and `reduced` need supports at zero; write \
          {axis} = true, or method = \"explicit\" in [housing]"
     )]
     MovedSupport { index: usize, axis: &'static str },
 }
 
-/// What to do about a mesh that is not where its bearing is.
-const MOVE: &str = "solid.mesh.origin names the point of the mesh's own coordinates that comes to the bearing's centre, solid.mesh.axis the \
-                    axis of the mesh that is the bore's";
+/// Hint for a mesh that is not at its bearing.
+const MOVE: &str = "solid.mesh.origin is the point, in the mesh's coordinates, that becomes the bearing's centre, solid.mesh.axis the \
+                    mesh's axis along the bore";
 
 fn seat_hint(beside: &Option<String>) -> String {
     match beside {
-        Some(beside) => format!(": {beside}, and where the mesh lies: {MOVE}"),
+        Some(beside) => format!(": {beside}; or move the mesh: {MOVE}"),
         None => {
-            ". Hint: refine the mesh along the axis, or let rows of nodes lie at the race's edges"
+            ". Hint: refine the mesh along the axis, or place rows of nodes at the race's edges"
                 .into()
         }
     }
 }
 
-/// Where the nodes of a surface lie from the race's centre, m.
+/// Bounding box of a surface's nodes relative to the race's centre, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lies {
     low: [f64; 3],
@@ -133,12 +133,12 @@ impl std::fmt::Display for Lies {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let along = |i: usize| format!("{:.4} to {:.4}", 1e3 * self.low[i], 1e3 * self.high[i]);
         let [x, y, z] = [0, 1, 2].map(along);
-        write!(f, "from the bearing's centre it lies at X {x}, Y {y}, Z {z} mm")
+        write!(f, "relative to the bearing's centre it is at X {x}, Y {y}, Z {z} mm")
     }
 }
 
 impl HousingSetupError {
-    /// Part of the scene that it is about; of a model that cannot be set up none.
+    /// Part of the scene that the error is about; `None` for a model that cannot be set up.
     pub fn about(&self) -> Option<About> {
         Some(match self {
             HousingSetupError::Solid(error) => error.about(),

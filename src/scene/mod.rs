@@ -1,4 +1,4 @@
-//! Scenes: a TOML or JSON file that describes bearings or a solid, and its way to SI data.
+//! Scenes: TOML or JSON files that describe bearings or a solid, and their conversion to SI data.
 //!
 //! [`text`] (files, tree of values with positions, units) → [`Document`] (given keys, checked against [`tables`]) →
 //! [`Scene`] (SI, validated, every default named; [`mod@resolve`]) → lists and meshes for the solver ([`build`]).
@@ -41,27 +41,27 @@ pub use text::sweep::{SweepAxis, SweepValues};
 
 use std::path::Path;
 
-/// Reads a scene file of any kind: bearings on their bodies and in their housings, or a solid by itself.
+/// Reads a scene file of any kind: bearings with bodies and housings, or a solid by itself.
 ///
 /// # Errors
-/// The first thing wrong with the file or its contents, with its place. The solid's mesh is not
-/// read yet: that is [`build::solid_mesh::build`].
+/// The first error of the file or its contents, with its position. The solid's mesh is read later, by
+/// [`build::solid_mesh::build`].
 pub fn read_subject(path: &Path) -> Result<Subject, SceneError> {
     resolve_subject(&Document::read_file(path)?)
 }
 
-/// Reads a scene file with a bearing; the name's ending (`.toml`, `.json`) tells the format.
+/// Reads a scene file with a bearing; the extension (`.toml`, `.json`) determines the format.
 ///
 /// # Errors
-/// The first thing wrong with the file or its contents, with its place.
+/// The first error of the file or its contents, with its position.
 pub fn read_file(path: &Path) -> Result<Scene, SceneError> {
     resolve(&Document::read_file(path)?)
 }
 
-/// Reads a scene with a bearing from text; `name` stands for the file in messages.
+/// Reads a scene with a bearing from text; messages use `name` as the file name.
 ///
 /// # Errors
-/// The first thing wrong with the text, with its place.
+/// The first error of the text, with its position.
 pub fn read_str(text: &str, format: Format, name: &str) -> Result<Scene, SceneError> {
     resolve(&Document::read_str(text, format, name)?)
 }

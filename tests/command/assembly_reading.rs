@@ -313,7 +313,7 @@ fn a_race_on_one_row_of_nodes_is_refused_everywhere() {
                 arguments.extend(["--out", &out]);
             }
             let said = refused(&arguments);
-            for word in ["housing.width", "in one row around it", "two rows at least", "row.toml:"]
+            for word in ["housing.width", "in one row around it", "at least two rows", "row.toml:"]
             {
                 assert!(said.contains(word), "{command}, {method}: {word:?} in {said:?}");
             }

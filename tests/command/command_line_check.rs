@@ -107,7 +107,7 @@ fn check_names_the_kind_the_defaults_and_the_assumptions() {
         let said = done(&["check", &path]);
         assert!(said.starts_with(&format!("{path}: a valid scene\n")), "{said}");
         assert!(said.contains(&format!("{kind}, ")), "{said}");
-        assert!(said.contains("bearing.ball_phase = 0 deg (ball 1 sits on the Y axis)"), "{said}");
+        assert!(said.contains("bearing.ball_phase = 0 deg (ball 1 is on the Y axis)"), "{said}");
         assert_eq!(echo(root.path(), scene)["bearing"]["kind"], kind);
     }
     let said = done(&["check", &scene("varying_compliance.toml")]);

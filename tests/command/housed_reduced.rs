@@ -287,7 +287,7 @@ fn what_a_reduced_housing_cannot_have_is_refused() {
     refused(&stepped, &["housing.window_phase"]);
     let moved = blow("reduced", "1 ms", "")
         .replace("x = true", "x = { half_sine = \"1 um\", start = \"0 s\", duration = \"1 ms\" }");
-    refused(&moved, &["solid.fixed", "`reduced` is held at zero"]);
+    refused(&moved, &["solid.fixed", "`reduced` need supports at zero"]);
     let tilted = blow("reduced", "1 ms", "")
         .replace("[outer_race]\n", "[outer_race]\ntilt_y = { moment = \"1 N m\" }\n");
     refused(&tilted, &["tilt_y", "not moments", "nominal"]);

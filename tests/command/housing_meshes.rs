@@ -38,7 +38,7 @@ fn where_a_mesh_is_put_is_told() {
     // And where it is not put.
     let message = refused(&place, &with_mesh(&place, &elsewhere(), 1, ""));
     for words in [
-        "it lies at X 4.4730 to 75.5270, Y -0.5270 to 70.5270, Z 0.0000 to 20.0000 mm",
+        "it is at X 4.4730 to 75.5270, Y -0.5270 to 70.5270, Z 0.0000 to 20.0000 mm",
         "solid.mesh.origin",
         "solid.mesh.axis",
     ] {

@@ -79,12 +79,12 @@ fn check_tells_of_the_motion_of_a_run() {
     let moving = check(&run.replace("[traction]", "[outer_race]\nmotion = \"5-dof\"\n[traction]"));
     assert!(moving.contains("to t = 0.001 s by rk4"), "{moving}");
     assert!(moving.contains("5 of 6 coordinates follow from loads"), "{moving}");
-    assert!(!moving.contains("centrifugal force of the balls is left out"), "{moving}");
+    assert!(!moving.contains("centrifugal force of the balls is neglected"), "{moving}");
     assert!(!moving.contains("the outer race is fixed"), "{moving}");
     assert!(check(&run).contains("outer race motion      fixed in space"), "{}", check(&run));
     // One of statics speaks of statics.
     let statics = check(&run.replace("[numerics]\nend = \"1 ms\"\nintegrator = \"rk4\"", ""));
-    assert!(statics.contains("centrifugal force of the balls is left out"), "{statics}");
+    assert!(statics.contains("centrifugal force of the balls is neglected"), "{statics}");
 }
 
 /// Balls that nothing keeps apart strike each other harder than the races.

@@ -36,7 +36,7 @@ fn meshes_from_files_are_repaired_only_when_asked() {
         &place.scene("m.toml", "[solid.mesh]\nfile = \"bar.msh\"\nunit = \"m\"\n"),
         &[],
     ));
-    assert!(said.contains("as millimetres it would be"), "{said}");
+    assert!(said.contains("in millimetres it would be"), "{said}");
     // An Abaqus file, its order raised.
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
     fs::copy(data.join("box_o1.inp"), place.path("box.inp")).unwrap();

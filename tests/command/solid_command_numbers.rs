@@ -250,8 +250,8 @@ fn duplicate_nodes_are_joined_when_asked() {
     let refused = command("check", &scene(&place, &load), &[]).output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
     let message = stderr(&refused);
-    let hint = "the repair `merge-duplicates` joins them";
-    for part in ["deck.inp: 9 pairs of nodes share a place", hint, "2 bodies that share no face"] {
+    let hint = "the repair `merge-duplicates` merges them";
+    for part in ["deck.inp: 9 pairs of nodes coincide", hint, "2 bodies that share no face"] {
         assert!(message.contains(part), "{part} is not in {message}");
     }
     let first = after(&message, "(first: ");
@@ -315,7 +315,7 @@ fn an_unlikely_size_is_said() {
             "statics" | "modes" => succeed(command(verb, &path, &["--dry"])),
             _ => succeed(command(verb, &path, &[])),
         };
-        assert!(said.contains("as millimetres it would be"), "{verb}: {said}");
+        assert!(said.contains("in millimetres it would be"), "{verb}: {said}");
     }
 }
 

@@ -323,7 +323,7 @@ fn wrong_input_decks_are_placed() {
         [("C3D8", "mesh with tetrahedra"), ("C3D10H", "write C3D10:"), ("C3D4H", "write C3D4,")]
     {
         let said = deck("C3D4", found).to_string();
-        assert!(said.contains(&format!("{found} are not read; {instead}")), "{said}");
+        assert!(said.contains(&format!("{found} are not supported; {instead}")), "{said}");
     }
     let error =
         deck("*Nset, nset=base", "*Element, type=C3D10\n12,1,2,3,7,1,2,3,7,1,2\n*Nset, nset=base");

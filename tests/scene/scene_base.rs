@@ -209,7 +209,7 @@ fn lists_of_names_over_those_of_a_base() {
         let said = wrong(&root, name);
         assert!(
             said.contains(
-                "body.beam.load: refused: it changes nothing, since [body.shaft] say it themselves"
+                "body.beam.load: refused: it has no effect, because [body.shaft] override it"
             ),
             "{said}"
         );
@@ -223,7 +223,7 @@ fn lists_of_names_over_those_of_a_base() {
         all
     };
     assert_eq!(places("mid.toml"), places("mid_long.toml"));
-    assert!(wrong(&root, "bare.toml").contains("says nothing of \"base\""));
+    assert!(wrong(&root, "bare.toml").contains("does not contain \"base\""));
     // With its names: nothing is left for the bearings to sit on, and they are held where they are.
     let Subject::Assembly(scene) = read(&root, "bodies.toml").unwrap() else { panic!("bearings") };
     assert!(scene.bodies.is_empty());
@@ -335,11 +335,11 @@ fn errors_name_the_file_that_is_wrong() {
         ("text.toml", "text.toml:1:8: base: refused: notes.txt cannot be read: unknown kind of scene file".into()),
         ("folder.toml", "folder.toml:1:8: base: refused: ".into()),
         ("number.toml", "number.toml:1:8: base: expected ".into()),
-        ("round.toml", "round.toml:1:8: base: refused: this is base number 9, and up to 8 are read. Hint: do they go round in a circle?".into()),
-        ("unheard.toml", "unheard.toml:3:24: bearing.clearance.radial: refused: it changes nothing, since [bearing.left], [bearing.right] say it \
-                          themselves. Hint: write bearing.left.clearance.radial".into()),
+        ("round.toml", "round.toml:1:8: base: refused: this is base number 9; at most 8 are read. Hint: is the chain of bases circular?".into()),
+        ("unheard.toml", "unheard.toml:3:24: bearing.clearance.radial: refused: it has no effect, because [bearing.left], \
+                          [bearing.right] override it. Hint: write bearing.left.clearance.radial".into()),
         ("empty.toml", "nothing.toml: the file is empty".into()),
-        ("without.toml", "without.toml:2:11: without: refused: base.toml says nothing of \"solid.msh\"".into()),
+        ("without.toml", "without.toml:2:11: without: refused: base.toml does not contain \"solid.msh\"".into()),
         ("baseless.toml", "baseless.toml:1:11: without: refused: there is no base".into()),
     ] {
         let said = wrong(&root, name);

@@ -64,7 +64,7 @@ fn files(folder: &Path) -> Vec<FileCase> {
         (write("empty.toml", b""), None, &["empty"]),
         (write("blank.json", b" \n\t\n"), None, &["empty"]),
         (braces(folder), None, &["104857600 bytes", "16777216 bytes"]),
-        (write("latin1.toml", &latin1), Some(4), &["not UTF-8", "save"]),
+        (write("latin1.toml", &latin1), Some(4), &["not valid UTF-8", "save"]),
         (write("utf16.toml", &utf16), Some(1), &["UTF-16"]),
         (write("binary.toml", b"a = 1\n\0\0\0"), Some(2), &["NUL"]),
         (write("many.json", &b"{".repeat(16 << 20)), Some(1), &["deeper than 64"]),

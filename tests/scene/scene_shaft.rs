@@ -102,11 +102,11 @@ fn faults_of_beams_say_what_is_wrong() {
         // Bounds of places and sizes are in metres, drawings are not.
         (
             beam("segments = [{ length = 400, outer_diameter = \"30 mm\" }]"),
-            "400 has no unit, and this is a length. Allowed units: mm, um, nm, cm, m, km, in. Hint: write \"400 mm\"",
+            "400 has no unit, but this is a length. Allowed units: mm, um, nm, cm, m, km, in. Hint: write for instance \"400 mm\"",
         ),
         (
             beam(&format!("{whole}load = [{{ at = \"-20\", z = \"1 N\" }}]")),
-            "Hint: write \"-20 mm\"",
+            "Hint: write for instance \"-20 mm\"",
         ),
         (
             beam(&format!(

@@ -1,5 +1,4 @@
-//! Bushings: hollow cylinders between two sleeves, graded to the corners where bonded and free
-//! surfaces meet.
+//! Bushings: hollow cylinders between two sleeves, graded towards the corners of bonded and free surfaces.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::generate::hexahedra::Hexahedra;
@@ -11,36 +10,36 @@ use std::f64::consts::{PI, TAU};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bushing {
     pub inner_diameter: f64,
-    /// Radial.
+    /// Radial thickness of the wall.
     pub thickness: f64,
     pub length: f64,
 }
 
-/// How much of a bushing is meshed.
+/// Meshed part of a bushing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Part {
     #[default]
     Whole,
-    /// Where X and Y are not negative, for a sleeve that moves along Z.
+    /// The quarter with X, Y ≥ 0, for a sleeve that moves along Z.
     Quarter,
 }
 
-/// Cells of the part. Stations at a distance s (0 to 1) from the middle of the wall to a sleeve, or from the
-/// middle of the length to an end, stand at 1 − (1 − s)^`grading`: 1 is even, 2 and 3 crowd at
-/// the corners, where stresses have no bound.
+/// Cells of the part. Stations at a fraction s (0 to 1) from the middle of the wall to a sleeve, or from the
+/// middle of the length to an end, are at 1 − (1 − s)^`grading`: 1 is uniform; 2 and 3 refine
+/// towards the corners, where stresses are singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BushingMesh {
     pub around: usize,
-    /// Even.
+    /// An even number.
     pub radial: usize,
-    /// Even of a whole.
+    /// An even number for the whole bushing.
     pub axial: usize,
     pub grading: f64,
     pub part: Part,
 }
 
-/// Sets: `inner`, `outer`, `x_low`, `x_high`, and the free faces, `ends`; of a quarter also `y_low`, its plane of
-/// symmetry, as `x_low` is.
+/// Meshes a bushing. Sets: `inner`, `outer`, `x_low`, `x_high`, and the free faces, `ends`; for a quarter also `y_low`,
+/// a plane of symmetry like `x_low`.
 ///
 /// # Errors
 /// [`MeshError::Dimension`].
@@ -69,7 +68,7 @@ pub fn bushing(bushing: &Bushing, mesh: &BushingMesh) -> Result<Solid, MeshError
     let mut cells = Hexahedra::default();
     cells.add_block([mesh.axial, mesh.radial, mesh.around], |[i, j, k]| {
         let angle = turn * k as f64 / mesh.around as f64;
-        // Of a quarter the last station lies on Y = 0 to the last bit.
+        // The last station of a quarter is exactly at Y = 0.
         let sine = if !whole && k == mesh.around { 0.0 } else { libm::sin(angle) };
         [x[i], radii[j] * sine, radii[j] * libm::cos(angle)]
     });
@@ -92,11 +91,11 @@ fn even(what: &'static str, count: usize) -> Result<(), MeshError> {
     if count.is_multiple_of(2) {
         return Ok(());
     }
-    let allowed = "even counts".to_string();
+    let allowed = "even numbers".to_string();
     Err(MeshError::Dimension { what, value: count as f64, unit: "", allowed })
 }
 
-/// An even number of cells that crowd at both ends; the middle is a station.
+/// An even number of cells graded towards both ends; the middle is a station.
 fn crowded(from: f64, to: f64, count: usize, grading: f64) -> Vec<f64> {
     let middle = 0.5 * (from + to);
     let station = |i: usize| {

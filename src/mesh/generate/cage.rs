@@ -1,8 +1,8 @@
-//! A ball bearing's cage: a ring with radial cylindrical pockets.
+//! Cage of a ball bearing: a ring with radial cylindrical pockets.
 //!
-//! Around each pocket lies a sector of the ring. At radius r let s = r sin φ be the distance from
+//! Each pocket is in a sector of the ring. At radius r let s = r sin φ be the distance from
 //! the pocket's middle plane; then the pocket is the circle s² + x² = r_p² on every layer, and the
-//! sector a rectangle. Rays from circle to rectangle make the cells, layer above layer.
+//! sector a rectangle. The cells of a layer are between rays from circle to rectangle.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::generate::grading::uniform;
@@ -14,28 +14,27 @@ use crate::mesh::tet_mesh::Face;
 use crate::mesh::topology::surface;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
-/// A cage about the X axis, centred on the origin; the first pocket looks along +Y. Lengths in m.
+/// A cage about the X axis, centred on the origin; the first pocket is at +Y. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cage {
     pub pocket_count: usize,
     pub pocket_radius: f64,
     pub inner_radius: f64,
     pub outer_radius: f64,
-    /// The source gives a mass instead of the width.
+    /// Axial width. The source gives a mass instead.
     pub width: f64,
-    /// Rails lower than the middle of the outer surface; not in the source.
+    /// Relieved rails; not in the source.
     pub relief: Option<RailRelief>,
 }
 
-/// The outer surface is a cylinder over `belt_width` in the middle and falls along cones by `depth`
-/// to both edges.
+/// Relief of the rails: the outer surface is a cylinder over `belt_width` in the middle and tapers conically by
+/// `depth` to both edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RailRelief {
     pub depth: f64,
     pub belt_width: f64,
 }
 
-/// Cells of a cage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CageMesh {
     /// Along a quarter of a pocket's edge.
@@ -47,7 +46,7 @@ pub struct CageMesh {
 }
 
 impl Cage {
-    /// Outer radius at the axial place `x`, m.
+    /// Outer radius at the axial position `x`, m.
     pub fn outer_radius_at(&self, x: f64) -> f64 {
         match self.relief {
             None => self.outer_radius,
@@ -84,7 +83,7 @@ impl Cage {
         }
     }
 
-    /// Sets: `inner`, `outer`, `x_low`, `x_high`, `pocket_1`, `pocket_2`, ….
+    /// Meshes the cage. Sets: `inner`, `outer`, `x_low`, `x_high`, `pocket_1`, `pocket_2`, ….
     ///
     /// # Errors
     /// [`MeshError::Dimension`] where pockets, bars or rails would not fit.
@@ -116,7 +115,7 @@ impl Cage {
             let angle = self.pocket_angle(pocket);
             let axis = [0.0, libm::cos(angle), libm::sin(angle)];
             let hole = Surface::Cylinder { point: [0.0; 3], axis, radius: self.pocket_radius };
-            // The same cylinder leaves the ring on its far side, through another pocket perhaps.
+            // The same cylinder also cuts the opposite side of the ring, perhaps through another pocket.
             let here = |face: &Face| {
                 let [_, y, z] = mesh.nodes[mesh.face_corners(*face)[0] as usize];
                 y * axis[1] + z * axis[2] > 0.0
@@ -126,7 +125,7 @@ impl Cage {
             sets.push((format!("pocket_{}", pocket + 1), faces));
             curved.push(hole);
         }
-        // What is left is the outer surface, whole also where faces straddle the belt's edge.
+        // The remaining faces are the outer surface, including faces across the belt's edge.
         let mut taken: Vec<Face> = sets.iter().flat_map(|(_, faces)| faces.clone()).collect();
         taken.sort_unstable();
         rest.retain(|face| taken.binary_search(face).is_err());
@@ -162,8 +161,8 @@ impl Cage {
     }
 }
 
-/// Points once round the square [-1, 1]² with the angle each has on the circle within: `quarter`
-/// steps a side, the first point repeated at the end.
+/// Points around the square [-1, 1]², each with its angle on the inscribed circle: `quarter`
+/// steps per side, the first point repeated at the end.
 fn square_loop(quarter: usize) -> Vec<([f64; 2], f64)> {
     let mut points = Vec::new();
     for side in 0..4 {

@@ -1,4 +1,4 @@
-//! Stations along a line: even, or growing from one end.
+//! Stations along a line: uniform or graded.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::generate::{between, divisions, ratio_between};
@@ -13,11 +13,11 @@ pub fn uniform(from: f64, to: f64, count: usize) -> Vec<f64> {
 }
 
 /// Stations from `from` to `to` whose first step is at most `first` and whose steps grow by
-/// `growth` each; all are shrunk alike so that the last one ends exactly at `to`.
+/// `growth` each; all are scaled so that the last one ends exactly at `to`.
 ///
 /// # Errors
-/// [`MeshError::Dimension`] for a first step that is not positive, a growth below 1, or more
-/// steps than can be meant.
+/// [`MeshError::Dimension`] for a first step that is not positive, a growth below 1, or too many
+/// steps.
 pub fn graded(from: f64, to: f64, first: f64, growth: f64) -> Result<Vec<f64>, MeshError> {
     between("first step", first, 0.0, f64::INFINITY)?;
     ratio_between("growth of steps", growth, 0.999_999, 100.0)?;
@@ -25,7 +25,7 @@ pub fn graded(from: f64, to: f64, first: f64, growth: f64) -> Result<Vec<f64>, M
     between("length to be divided", length, 0.0, f64::INFINITY)?;
     divisions("number of first steps in the length", (length / first).ceil() as usize, 0)?;
     let (mut steps, mut sum) = (vec![first], first);
-    // A step that ends within rounding of the end is the last one.
+    // A step that ends within rounding error of the end is the last one.
     while sum < length * (1.0 - 1e-12) {
         let step = steps[steps.len() - 1] * growth.max(1.0);
         steps.push(step);

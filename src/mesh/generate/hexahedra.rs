@@ -1,9 +1,8 @@
-//! Blocks of hexahedra that share nodes where they touch, cut into tetrahedra that fit together.
+//! Blocks of hexahedra that share nodes where they touch, cut into conforming tetrahedra.
 //!
-//! A quadrilateral is cut along the diagonal from its lowest-numbered node, so both hexahedra at
-//! it agree whatever their blocks are (Dompierre et al. 1999). Within a hexahedron the tetrahedra
-//! fan out from its lowest-numbered node to the triangles of the three sides that do not hold it:
-//! six in all.
+//! A quadrilateral is cut along the diagonal from its lowest-numbered node, so that both adjacent hexahedra
+//! agree, whatever their blocks (Dompierre et al. 1999). A hexahedron is cut into six tetrahedra
+//! from its lowest-numbered node to the triangles of the three sides that do not contain it.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::measure::straight_volume;
@@ -11,23 +10,23 @@ use crate::mesh::repair::coincident_nodes;
 use crate::mesh::tet_mesh::{Elements, TetMesh};
 use nalgebra::Vector3;
 
-/// Sides of a hexahedron, each going round; 0…3 is its floor, 4…7 stands above.
+/// Sides of a hexahedron, corners in cyclic order; 0…3 is the bottom, 4…7 the top.
 const SIDES: [[usize; 4]; 6] =
     [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
-/// Nodes of different blocks are one node within this part of the body's size.
+/// Distance below which nodes of different blocks are merged, divided by the body's size.
 const WELD: f64 = 1e-9;
 
 #[derive(Default)]
 pub struct Hexahedra {
     points: Vec<[f64; 3]>,
     cells: Vec<[u32; 8]>,
-    /// First cell of each block.
+    /// Index of the first cell of each block.
     blocks: Vec<usize>,
 }
 
 impl Hexahedra {
-    /// Adds a block of `counts` cells whose node (i, j, k) stands at `place([i, j, k])`.
+    /// Adds a block of `counts` cells whose node (i, j, k) is at `place([i, j, k])`.
     pub fn add_block(&mut self, counts: [usize; 3], place: impl Fn([usize; 3]) -> [f64; 3]) {
         let first = self.points.len();
         let [ni, nj, nk] = counts;
@@ -56,7 +55,7 @@ impl Hexahedra {
     /// Joins the blocks and cuts every cell into six tetrahedra.
     ///
     /// # Errors
-    /// [`MeshError::Tangled`] where a cell is folded or turned against the others of its block.
+    /// [`MeshError::Tangled`] if a cell is folded or inverted relative to the others of its block.
     pub fn into_mesh(mut self) -> Result<TetMesh, MeshError> {
         if u32::try_from(self.points.len()).is_err() {
             return Err(MeshError::TooLarge { count: self.points.len() });
@@ -112,7 +111,7 @@ impl Hexahedra {
     }
 }
 
-/// The six tetrahedra of a cell. All have the same sense; which one depends on the cell's own.
+/// The six tetrahedra of a cell. All have the orientation of the cell.
 fn cut(cell: [u32; 8]) -> [[u32; 4]; 6] {
     let apex = cell.into_iter().fold(u32::MAX, u32::min);
     let mut tets = [[apex; 4]; 6];
@@ -125,7 +124,7 @@ fn cut(cell: [u32; 8]) -> [[u32; 4]; 6] {
         let triangles =
             if a.min(c) < b.min(d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
         for [p, q, r] in triangles {
-            // The floor is listed inwards, the other sides outwards.
+            // The bottom is listed with inward orientation, the other sides outward.
             tets[next] = if side == 0 { [apex, p, r, q] } else { [apex, p, q, r] };
             next += 1;
         }

@@ -1,8 +1,8 @@
-//! Housings A to D of 2.4: plane sections (Y, Z) about a bore, drawn out along X.
+//! Housings A to D of 2.4: plane sections (Y, Z) about a bore, extruded along X.
 //!
-//! Their dimensions stand in a figure that is lost, so each is an input. The section is meshed by
-//! lines from the bore to an outline around it; the pillow block's base sticks out of that outline
-//! and is added as blocks of its own.
+//! Their dimensions are in a figure that is not available, so each is an input. The section is meshed by
+//! lines from the bore to an outline around it; the pillow block's base is outside that outline
+//! and is added as separate blocks.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::generate::grading::uniform;
@@ -18,38 +18,38 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// A housing about a bore along X, centred on the origin. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Housing {
-    /// Housing A: a square cuboid, held on its four sides.
+    /// Housing A: a square cuboid, fixed on its four sides.
     Square { bore_radius: f64, side: f64, depth: f64 },
-    /// Housing B: the half of a pillow block below the bore's centre and its image above; held at
+    /// Housing B: the half of a pillow block below the bore's centre and its mirror image above; fixed at
     /// the bottom and at the top.
     MirroredPillowBlock(PillowBlock),
-    /// Housing C: held at the bottom.
+    /// Housing C: a pillow block, fixed at the bottom.
     PillowBlock(PillowBlock),
-    /// Housing D: an annulus, held at its outer surface.
+    /// Housing D: an annulus, fixed at its outer surface.
     Annulus { bore_radius: f64, outer_radius: f64, depth: f64 },
 }
 
-/// A base, two necks rising from it through fillets, and an annulus of even thickness above.
+/// A pillow block: a base, two necks joined to it by fillets, and an annulus of uniform thickness above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PillowBlock {
     pub bore_radius: f64,
-    /// Of the annulus.
+    /// Outer radius of the annulus.
     pub outer_radius: f64,
-    /// From the bottom to the bore's centre.
+    /// Height of the bore's centre above the bottom.
     pub centre_height: f64,
     pub base_width: f64,
     pub base_height: f64,
-    /// Over both necks, at most the annulus' diameter.
+    /// Outer width over both necks, at most the annulus' diameter.
     pub neck_width: f64,
-    /// Between necks and base.
+    /// Radius of the fillets between necks and base.
     pub fillet_radius: f64,
-    /// Along the bore.
+    /// Length along the bore.
     pub depth: f64,
 }
 
 impl PillowBlock {
-    /// Assumed proportions, all as multiples of the bore's radius: annulus 1.4, centre height 1.8,
-    /// base 4.2 × 0.55, necks 2.5 apart outside, fillets 0.35.
+    /// Assumed proportions in multiples of the bore radius: annulus 1.4, centre height 1.8,
+    /// base 4.2 × 0.55, neck width 2.5, fillets 0.35.
     pub fn proportioned(bore_radius: f64, depth: f64) -> PillowBlock {
         PillowBlock {
             bore_radius,
@@ -64,7 +64,7 @@ impl PillowBlock {
     }
 }
 
-/// Cells of a housing: `around` the bore (a few more where fillets need them), from the bore to
+/// Numbers of cells of a housing: `around` the bore (a few more if fillets need them), from the bore to
 /// the outline and along X; radial steps grow by `radial_growth` from the bore outwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HousingMesh {
@@ -75,11 +75,11 @@ pub struct HousingMesh {
 }
 
 impl Housing {
-    /// Sets: `bore`, `fixed` (what the source holds), `x_low`, `x_high`.
+    /// Meshes the housing. Sets: `bore`, `fixed` (the surface that the source fixes), `x_low`, `x_high`.
     ///
     /// # Errors
-    /// [`MeshError::Dimension`] for dimensions that do not fit each other, [`MeshError::Tangled`]
-    /// where the bore comes too close to the outline.
+    /// [`MeshError::Dimension`] for inconsistent dimensions, [`MeshError::Tangled`]
+    /// if the bore is too close to the outline.
     pub fn solid(&self, mesh: &HousingMesh) -> Result<Solid, MeshError> {
         divisions("cells around the bore", mesh.around, 8)?;
         divisions("radial cells", mesh.radial, 1)?;
@@ -111,7 +111,7 @@ fn rename(solid: &mut Solid, from: &str, to: &str) {
     }
 }
 
-/// Steps along a run of the outline that keep the cells at the bore even.
+/// Number of steps along a run of the outline for uniform cells at the bore.
 fn steps(from: Point, to: Point, around: usize) -> usize {
     let sine = from[0] * to[1] - from[1] * to[0];
     let cosine = from[0] * to[0] + from[1] * to[1];
@@ -119,9 +119,9 @@ fn steps(from: Point, to: Point, around: usize) -> usize {
     ((angle / TAU * around as f64).round() as usize).max(1)
 }
 
-/// Cells between the bore and the closed loop `outline`, drawn out along `x`. The loop begins
-/// straight below the bore; points on the bore are spread evenly, so that short runs of the
-/// outline, the fillets, do not make thin wedges.
+/// Cells between the bore and the closed loop `outline`, extruded along `x`. The loop begins
+/// directly below the bore; points on the bore are equally spaced, so that short runs of the
+/// outline, the fillets, do not give thin wedges.
 fn add_core(
     cells: &mut Hexahedra,
     bore_radius: f64,
@@ -166,11 +166,11 @@ fn ends(x: &[f64]) -> Vec<(&'static str, Surface)> {
 
 /// Points of the pillow block's section on the side +Y, about the bore's centre.
 struct Section {
-    /// Where the core's outline leaves the bottom.
+    /// Point where the core's outline leaves the bottom.
     foot: Point,
     fillet_centre: Point,
     fillet_radius: f64,
-    /// Where the fillet ends in the neck and the core's outline begins to follow the surface, and
+    /// Points where the fillet ends in the neck and the core's outline begins to follow the surface, and
     /// where the neck ends in the annulus.
     neck_low: Point,
     neck_high: Point,
@@ -197,8 +197,8 @@ fn section(block: &PillowBlock) -> Result<Section, MeshError> {
     let (bottom, base_top) = (-centre_height, block.base_height - centre_height);
     let fillet_centre = [neck + block.fillet_radius, base_top + block.fillet_radius];
     let neck_low = [neck, fillet_centre[1]];
-    // From the fillet's upper end the core's outline leans inwards to the bottom: half way between
-    // the fillet's tangent and the line to the bore, so that neither side is pointed.
+    // From the fillet's upper end the core's outline leads inwards to the bottom: half way between
+    // the fillet's tangent and the line to the bore, so that neither angle is acute.
     let foot = [(neck - 0.8 * (neck_low[1] - bottom)).max(0.3 * neck), bottom];
     Ok(Section {
         foot,
@@ -214,7 +214,7 @@ fn section(block: &PillowBlock) -> Result<Section, MeshError> {
 }
 
 impl Section {
-    /// The core's outline from the bottom's middle to the height of the centre, and the steps
+    /// The core's outline from the bottom's middle to the height of the centre, and the number of steps
     /// from the foot to the neck.
     fn lower_outline(&self, around: usize) -> (Path, usize) {
         let mut path = Path::from([0.0, self.bottom]);
@@ -230,7 +230,7 @@ impl Section {
         (path, rising)
     }
 
-    /// The base beside the core: under the fillet, then to its end. `signs` mirror it.
+    /// The base next to the core: under the fillet, then to its end. `signs` mirror it.
     fn add_wing(
         &self,
         cells: &mut Hexahedra,
@@ -272,7 +272,7 @@ fn pillow_block(
         let quarter = mesh.around.div_ceil(4);
         path.arc([0.0; 2], section.outer_radius, 0.0, FRAC_PI_2, quarter);
     }
-    // The top lies on the mirror plane but for rounding.
+    // The top is on the mirror plane up to rounding.
     if let Some(top) = path.0.last_mut() {
         top[0] = 0.0;
     }

@@ -1,8 +1,8 @@
-//! Meshes of the dissertation's parts: mapped blocks of hexahedra, cut into tetrahedra.
+//! Mesh generators for the dissertation's parts: mapped blocks of hexahedra, cut into tetrahedra.
 //!
-//! Every generator gives a [`Solid`]: a four-node mesh with named surface sets, and the curved
-//! surfaces it approximates, so that [`Solid::quadratic`] can put mid-side nodes on them.
-//! Dimensions are inputs, in m; where the source states none, the default says so.
+//! Every generator returns a [`Solid`]: a four-node mesh with named surface sets, and the curved
+//! surfaces it approximates, on which [`Solid::quadratic`] places mid-side nodes.
+//! Dimensions are inputs, in m.
 mod bushing;
 mod cage;
 mod grading;
@@ -25,19 +25,19 @@ use crate::mesh::surface::Surface;
 use crate::mesh::tet_mesh::TetMesh;
 use crate::mesh::topology::surface;
 
-/// A generated mesh and the curved surfaces that bound the true body.
+/// A generated mesh and the curved boundary surfaces of the exact body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     pub mesh: TetMesh,
     pub curved: Vec<Surface>,
 }
 
-/// Part of the mesh's size within which generated nodes lie on the surfaces they were put on.
+/// Distance of generated nodes from their surfaces, divided by the mesh's size.
 const ON_SURFACE: f64 = 1e-9;
 
 impl Solid {
-    /// The same body in ten-node elements with mid-side nodes on the curved surfaces. Of hollow bodies about the X axis all layers
-    /// are curved where elements between straight ones would fold.
+    /// The body in ten-node elements with mid-side nodes on the curved surfaces. In hollow bodies about the X axis all layers
+    /// are curved if elements between straight ones would fold.
     ///
     /// # Errors
     /// As [`elevate`].
@@ -50,7 +50,7 @@ impl Solid {
         Ok(if curved.pulled_back < elevated.pulled_back { curved } else { elevated })
     }
 
-    /// Whether it lies between cylinders about the X axis, and nothing of it on that axis.
+    /// Returns whether the body is bounded by cylinders about the X axis and no node is on the axis.
     fn is_hollow_about_x(&self) -> bool {
         let about_x = |shape: &Surface| {
             matches!(shape, Surface::Cylinder { point, axis, .. }
@@ -63,7 +63,7 @@ impl Solid {
     }
 }
 
-/// Adds named surface sets to a generated mesh; a name that comes twice joins its surfaces.
+/// Adds named surface sets to a generated mesh; surfaces with the same name are merged.
 fn with_sets(
     mut mesh: TetMesh,
     sets: &[(&str, Surface)],
@@ -83,12 +83,12 @@ fn with_sets(
     Ok(Solid { mesh, curved })
 }
 
-/// Refuses a length (m) that is not above `low` and below `high`.
+/// Refuses a length (m) outside the open interval from `low` to `high`.
 fn between(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), MeshError> {
     within(what, value, low, high, " m")
 }
 
-/// As [`between`] of a ratio.
+/// As [`between`], for a ratio.
 fn ratio_between(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), MeshError> {
     within(what, value, low, high, "")
 }
@@ -106,7 +106,7 @@ fn within(
     let [least, most] = [low, high].map(six_digits);
     let allowed = match high.is_finite() {
         true => format!("{least} to {most}{unit} (both excluded)"),
-        false => format!("what is above {least}{unit}"),
+        false => format!("more than {least}{unit}"),
     };
     Err(MeshError::Dimension { what, value, unit, allowed })
 }

@@ -1,10 +1,10 @@
-//! Plane outlines as runs of points: lines and arcs with a number of steps for each.
+//! Plane outlines: points along lines and arcs.
 
 use crate::mesh::generate::grading::uniform;
 
 pub type Point = [f64; 2];
 
-/// A run of points that grows at its end.
+/// A path of points, extended at its end.
 pub struct Path(pub Vec<Point>);
 
 impl Path {
@@ -23,15 +23,15 @@ impl Path {
         }
     }
 
-    /// Along a circle between two angles; the path must stand at the first.
+    /// Adds an arc between two angles; the path must end at the first.
     pub fn arc(&mut self, centre: Point, radius: f64, from: f64, to: f64, steps: usize) {
         for angle in &uniform(from, to, steps)[1..] {
             self.0.push(on_circle(centre, radius, *angle));
         }
     }
 
-    /// The path and then its mirror image back to the start, as a closed loop: `flip` is the
-    /// coordinate that changes sign. The path begins and ends where that coordinate is zero.
+    /// The path followed by its mirror image, as a closed loop; the coordinate `flip` changes sign. The
+    /// path must begin and end where that coordinate is zero.
     pub fn closed_by_mirror(self, flip: usize) -> Vec<Point> {
         let mut points = self.0;
         for index in (0..points.len() - 1).rev() {
@@ -47,7 +47,7 @@ pub fn on_circle(centre: Point, radius: f64, angle: f64) -> Point {
     [centre[0] + radius * libm::cos(angle), centre[1] + radius * libm::sin(angle)]
 }
 
-/// The point at `part` of the way from `a` to `b`, exact at both ends.
+/// Linear interpolation between `a` and `b` at the fraction `part`, exact at both ends.
 pub fn between(a: Point, b: Point, part: f64) -> Point {
     [0, 1].map(|i| if part == 1.0 { b[i] } else { a[i] + (b[i] - a[i]) * part })
 }

@@ -8,7 +8,6 @@ use crate::mesh::select::Region;
 use crate::mesh::surface::Surface;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI, TAU};
 
-/// A cuboid with nodes at all products of stations.
 fn cuboid(x: &[f64], y: &[f64], z: &[f64]) -> Result<Solid, MeshError> {
     let mut cells = Hexahedra::default();
     cells.add_block([x.len() - 1, y.len() - 1, z.len() - 1], |[i, j, k]| [x[i], y[j], z[k]]);
@@ -23,13 +22,12 @@ fn cuboid(x: &[f64], y: &[f64], z: &[f64]) -> Result<Solid, MeshError> {
     with_sets(cells.into_mesh()?, &sets, Vec::new())
 }
 
-/// A block with nodes at all products of ascending stations along X, Y and Z, m; they may stand close
-/// where much happens.
+/// A block with nodes at all combinations of ascending stations along X, Y and Z, m.
 ///
 /// Surface and node sets: `x_low`, `x_high` and so on.
 ///
 /// # Errors
-/// [`MeshError::Dimension`] for fewer than two stations, or stations that do not ascend.
+/// [`MeshError::Dimension`] for fewer than two stations, or stations that are not ascending.
 pub fn block(stations: [&[f64]; 3]) -> Result<Solid, MeshError> {
     for along in stations {
         divisions("cells along the block", along.len().saturating_sub(1), 1)?;
@@ -40,7 +38,7 @@ pub fn block(stations: [&[f64]; 3]) -> Result<Solid, MeshError> {
     cuboid(stations[0], stations[1], stations[2])
 }
 
-/// A straight bar from the origin along X, its section centred on the axis: `size` m, `counts` cells
+/// A straight bar from the origin along X, its section centred on the axis; `size` in m and `counts` of cells
 /// along X, Y and Z.
 ///
 /// Surface and node sets: `x_low`, `x_high` and so on.
@@ -59,21 +57,21 @@ pub fn bar(size: [f64; 3], counts: [usize; 3]) -> Result<Solid, MeshError> {
     )
 }
 
-/// The cuboid of 2.3.2 under a cylinder, measured in half contact widths b: 8 b wide (Y), 5 b high
-/// (Z, top at 0), 1 b deep (X), fine within 3 b × 1.5 b below the line of contact.
+/// The cuboid of 2.3.2 under a cylinder, in half contact widths b: 8 b wide (Y), 5 b high
+/// (Z, top at 0), 1 b deep (X), with a fine zone of 3 b × 1.5 b below the line of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactBlock {
-    /// b, m: the largest half contact width of the study. The source does not state it.
+    /// Half contact width b, m: the largest of the study. The source does not state it.
     pub half_width: f64,
     /// Cells per b in the fine zone.
     pub cells_per_half_width: usize,
     /// Cells along the depth.
     pub depth_cells: usize,
-    /// Growth of steps outside the fine zone; the source does not state it (1.25 is moderate).
+    /// Growth ratio of steps outside the fine zone; the source does not state it (1.25 is moderate).
     pub growth: f64,
 }
 
-/// Sets: `z_high` (the loaded top), `z_low` (the bottom), `x_low` and so on.
+/// Meshes the block. Sets: `z_high` (the loaded top), `z_low` (the bottom), `x_low` and so on.
 ///
 /// # Errors
 /// [`MeshError::Dimension`].
@@ -102,7 +100,7 @@ pub struct Ring {
     pub width: f64,
 }
 
-/// Cells of a ring; radial steps grow by `radial_growth` from the bore outwards.
+/// Numbers of cells of a ring; radial steps grow by `radial_growth` from the bore outwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RingMesh {
     pub around: usize,
@@ -111,7 +109,7 @@ pub struct RingMesh {
     pub radial_growth: f64,
 }
 
-/// Sets: `inner`, `outer`, `x_low`, `x_high`.
+/// Meshes a ring. Sets: `inner`, `outer`, `x_low`, `x_high`.
 ///
 /// # Errors
 /// [`MeshError::Dimension`].
@@ -136,7 +134,7 @@ pub fn ring(ring: &Ring, mesh: &RingMesh) -> Result<Solid, MeshError> {
     with_sets(cells.into_mesh()?, &sets, vec![inner, outer])
 }
 
-/// `count` steps from `from` to `to`, each `growth` times the one before.
+/// Stations of `count` steps from `from` to `to`, each `growth` times the previous one.
 pub(super) fn geometric(from: f64, to: f64, count: usize, growth: f64) -> Vec<f64> {
     let mut sums = vec![0.0];
     let mut step = 1.0;
@@ -149,9 +147,9 @@ pub(super) fn geometric(from: f64, to: f64, count: usize, growth: f64) -> Vec<f6
     (0..=count).map(station).collect()
 }
 
-/// A solid shaft about X with a layer of nodes at each of `stations` (ascending, m) and between
-/// them as many as keep layers within `longest` m; `around` is a multiple of 8, `radial` the cells
-/// in the ring about the square core.
+/// A solid shaft about X with a layer of nodes at each of `stations` (ascending, m) and more between
+/// them, so that no layer is longer than `longest` (m); `around` is a multiple of 8, `radial` the number of
+/// cells in the ring around the square core.
 ///
 /// Sets: `outer`, `x_low`, `x_high`, and the node sets `station_1`, `station_2`, ….
 ///
@@ -197,32 +195,32 @@ pub(super) fn check_around(around: usize, radial: usize) -> Result<(), MeshError
     if around.is_multiple_of(8) {
         return Ok(());
     }
-    let (what, allowed) = ("cells around the shaft", "the multiples of 8".to_string());
+    let (what, allowed) = ("cells around the shaft", "multiples of 8".to_string());
     Err(MeshError::Dimension { what, value: around as f64, unit: "", allowed })
 }
 
-/// A core of `side` × `side` cells whose border bulges half way to a circle, and four blocks from
-/// its sides to the rim.
+/// A disc: a core of `side` × `side` cells with curved borders, half way between a square and a circle, and four
+/// blocks from its sides to the rim.
 pub(super) fn disc(cells: &mut Hexahedra, radius: f64, side: usize, radial: usize, x: &[f64]) {
-    /// Radius of the core's corners over the shaft's.
+    /// Radius of the core's corners divided by that of the shaft.
     const CORE: f64 = 0.55;
-    /// How far the core's border bulges from a square (0) to a circle (1).
+    /// Curvature of the core's border, from a square (0) to a circle (1).
     const BULGE: f64 = 0.35;
     let layers = x.len() - 1;
-    // Rim and border of the core over u in [-1, 1], a quarter of the way round.
+    // Rim and border of the core over u in [-1, 1], a quarter of the circumference.
     let on_rim = |u: f64| {
         let angle = FRAC_PI_4 * u;
         [libm::cos(angle), libm::sin(angle)]
     };
     let border = |u: f64| {
         let [c, s] = on_rim(u);
-        // Between the square and the circle round it, nearer the square: corners stay corners.
+        // Between the square and its circumscribed circle, nearer the square, which keeps the corners.
         let chord = [FRAC_1_SQRT_2, u * FRAC_1_SQRT_2];
         [(c, chord[0]), (s, chord[1])]
             .map(|(round, flat)| CORE * (BULGE * round + (1.0 - BULGE) * flat))
     };
     let unit = |i: usize| -1.0 + 2.0 * i as f64 / side as f64;
-    // Transfinite: the four bulging borders, minus the corners counted twice.
+    // Transfinite interpolation: the four curved borders minus the corners counted twice.
     let corner = border(1.0)[0];
     let core = |u: f64, v: f64| {
         let (right, top) = (border(v), border(u));

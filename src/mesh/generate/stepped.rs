@@ -1,4 +1,4 @@
-//! Stepped shafts: round sections one after the other, full or hollow.
+//! Stepped shafts: consecutive round sections, solid or hollow.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::generate::hexahedra::Hexahedra;
@@ -10,20 +10,20 @@ use std::f64::consts::TAU;
 /// A length of one section about X. Lengths in m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShaftStep {
-    /// Places along X with a layer of nodes, ascending; the first is the last of the step before.
+    /// Axial positions of the node layers, ascending; the first is the last of the previous step.
     pub layers: Vec<f64>,
-    /// Zero where it is full.
+    /// Inner radius; 0 for a solid section.
     pub inner_radius: f64,
     pub outer_radius: f64,
 }
 
-/// Radii nearer to each other than this part of the largest are one.
+/// Difference below which radii are equal, divided by the largest radius.
 const NEAR: f64 = 1e-9;
-/// Part of the innermost radius that its outer ring of cells takes ([`disc`]).
+/// Fraction of the innermost radius covered by its outer ring of cells ([`disc`]).
 const RING: f64 = 0.45;
 
-/// A shaft of steps with `around` cells (a multiple of 8) around and `radial` ones in the ring about the square core; the
-/// rings outside it, between all radii that the steps have, get cells of that size.
+/// Meshes a shaft of steps with `around` cells (a multiple of 8) around the circumference and `radial` cells in the ring around
+/// the square core. The rings outside it, between the radii of all steps, have cells of that size.
 ///
 /// Sets: `outer`, `x_low`, `x_high`.
 ///
@@ -82,7 +82,7 @@ pub fn stepped_shaft(
     with_sets(cells.into_mesh()?, &sets, curved)
 }
 
-/// Its nodes at the inner radius are those of [`disc`] at its rim.
+/// A ring whose nodes at the inner radius are those of [`disc`] at its rim.
 fn ring(cells: &mut Hexahedra, radii: [f64; 2], around: usize, radial: usize, x: &[f64]) {
     cells.add_block([x.len() - 1, radial, around], |[i, j, k]| {
         let angle = TAU * k as f64 / around as f64;

@@ -1,7 +1,7 @@
-//! Abaqus' and CalculiX' `.inp`: nodes, C3D4 and C3D10 elements, node and element sets, surfaces.
+//! Reader of `.inp` files (Abaqus, CalculiX): nodes, C3D4 and C3D10 elements, node and element sets, surfaces.
 //!
-//! Keywords about anything but the mesh are skipped and reported. One part with one unmoved
-//! instance is read; more than one is refused, because their numbers overlap.
+//! Keywords that do not describe the mesh are skipped and reported. One part with one instance that is not moved
+//! is read; more than one is refused, because their numbers overlap.
 
 use crate::mesh::read::abaqus_lines::{Keyword, extend_set, keyword, member_count, number};
 use crate::mesh::read::assemble::{Numbered, RawFace, RawMesh};
@@ -9,7 +9,7 @@ use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::source::{Source, excerpt};
 use crate::mesh::read::{DeckMaterial, LengthUnit, Loaded};
 
-/// What the data lines of the present keyword are.
+/// Kind of the data lines of the current keyword.
 enum Block {
     Nothing,
     Nodes {
@@ -61,7 +61,7 @@ impl Kind {
 /// Reads an input deck.
 ///
 /// # Errors
-/// [`ReadError`] with the line where the file is wrong.
+/// [`ReadError`] with the line of the error.
 pub fn read_abaqus(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
     let mut source = Source::new(bytes);
     if bytes.trim_ascii().is_empty() {
@@ -95,7 +95,7 @@ pub fn read_abaqus(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> 
     deck.raw.finish(&source, unit)
 }
 
-/// An element whose list of nodes is still open when its block ends.
+/// Refuses an element whose list of nodes is incomplete at the end of its block.
 fn finish(source: &Source, block: &Block) -> Result<(), ReadError> {
     match block {
         Block::Elements { pending, from, .. } if !pending.is_empty() => {
@@ -163,7 +163,7 @@ impl Deck {
             }
             "INCLUDE" => refuse("*INCLUDE".into(), "join the files into one"),
             "SYSTEM" | "NGEN" | "NCOPY" | "ELGEN" | "ELCOPY" | "NFILL" => {
-                refuse(format!("*{}", keyword.name), "write nodes and elements out")
+                refuse(format!("*{}", keyword.name), "write all nodes and elements explicitly")
             }
             "HEADING" | "END PART" | "END INSTANCE" | "ASSEMBLY" | "END ASSEMBLY" => {
                 Ok(Block::Nothing)
@@ -175,7 +175,7 @@ impl Deck {
         }
     }
 
-    /// Materials are not taken, but remembered, so that what is taken in their place can be told.
+    /// Records a material. The mesh does not use it; a note compares it with the material of the scene.
     fn material(&mut self, keyword: &str, of: &Keyword) -> Block {
         let isotropic = of.parameter("TYPE").is_none_or(|kind| {
             ["ISO", "ISOTROPIC"].iter().any(|name| kind.eq_ignore_ascii_case(name))
@@ -192,7 +192,7 @@ impl Deck {
         }
     }
 
-    /// Constants that are not numbers, or of no material, are left.
+    /// Records constants of a material; those that are not numbers or belong to no material are ignored.
     fn constants(&mut self, words: &[&str], kind: Constants) {
         let number = |index: usize| {
             let value: Option<f64> = words.get(index).and_then(|word| word.parse().ok());
@@ -240,7 +240,7 @@ impl Deck {
                 }
                 let wanted = kind.node_count() + 1;
                 if pending.len() > wanted {
-                    let expected = format!("{wanted} numbers an element");
+                    let expected = format!("{wanted} numbers per element");
                     let found = pending.len().to_string();
                     return Err(source.error_at(at, Problem::Expected { expected, found }));
                 }
@@ -265,7 +265,7 @@ impl Deck {
             Block::Surface { name } => self.surface(source, at, words, name),
             Block::Instance => {
                 let what = "a moved instance".to_string();
-                let hint = "write the part where it stands";
+                let hint = "write the part at its final position";
                 Err(source.error_at(at, Problem::Unsupported { what, hint }))
             }
         }
@@ -323,7 +323,7 @@ impl Deck {
         Ok(())
     }
 
-    /// `set or element, S1`, or without a side all free sides.
+    /// Reads `set or element, S1`; without a side, all free sides.
     fn surface(
         &mut self,
         source: &Source,

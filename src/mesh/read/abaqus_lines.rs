@@ -18,13 +18,13 @@ impl Keyword {
 
     pub fn required(&self, source: &Source, name: &'static str) -> Result<&str, ReadError> {
         self.parameter(name).filter(|value| !value.is_empty()).ok_or_else(|| {
-            let expected = format!("{name}= behind *{}", self.name);
+            let expected = format!("{name}= after *{}", self.name);
             source.error_at(self.at, Problem::Expected { expected, found: String::new() })
         })
     }
 }
 
-/// Takes a keyword line apart; a comma at its end continues it on the next line.
+/// Parses a keyword line; a comma at its end continues it on the next line.
 pub fn keyword(source: &mut Source, line: &[u8], at: usize) -> Keyword {
     let mut text = String::from_utf8_lossy(line).into_owned();
     while text.ends_with(',') {
@@ -56,8 +56,8 @@ pub fn number<T: std::str::FromStr>(
 
 pub type Sets = BTreeMap<String, Vec<u64>>;
 
-/// How many members a line of a set has: numbers, names of sets, or with GENERATE first, last and
-/// step. Known before any is made.
+/// Number of members that a line of a set defines: numbers, names of sets, or with GENERATE first, last and
+/// step. Computed before any is stored.
 pub fn member_count(
     source: &Source,
     at: usize,
@@ -80,7 +80,7 @@ pub fn member_count(
         number::<u64>(source, at, word, "a number of GENERATE")?;
     }
     let [first, last, step] = range(words);
-    // A range can name at most what a file of this size can define.
+    // A range cannot have more members than a file of this size can define.
     let count = last.saturating_sub(first) / step.max(1);
     if step == 0 || last < first || count > source.length() as u64 {
         let found = format!("{first}, {last}, {step}");
@@ -90,7 +90,6 @@ pub fn member_count(
     Ok(count as usize + 1)
 }
 
-/// First, last and step of a line whose words are numbers.
 fn range(words: &[&str]) -> [u64; 3] {
     let mut bounds = [0, 0, 1];
     for (bound, word) in bounds.iter_mut().zip(words) {
@@ -99,7 +98,7 @@ fn range(words: &[&str]) -> [u64; 3] {
     bounds
 }
 
-/// Adds the members of a line that [`member_count`] has passed.
+/// Adds the members of a line that [`member_count`] has checked.
 pub fn extend_set(words: &[&str], generate: bool, name: &str, sets: &mut Sets) {
     let mut tags = Vec::new();
     if generate {

@@ -1,4 +1,4 @@
-//! From numbers as a file has them to a mesh: tags become indices, triangles become faces.
+//! Conversion from the file's numbers to a mesh: tags become indices, triangles become faces.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::read::error::{Problem, ReadError};
@@ -8,7 +8,7 @@ use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
 use crate::mesh::topology::sorted_faces;
 use std::collections::{BTreeMap, HashMap};
 
-/// An element as the file lists it, in this program's node order.
+/// An element with the file's numbers, in this program's node order.
 struct RawTet {
     tag: u64,
     nodes: [u64; 10],
@@ -18,23 +18,23 @@ struct RawTet {
 /// A member of a named surface.
 #[derive(Clone, Copy)]
 pub enum RawFace {
-    /// Three corner nodes, as a triangle in the file gives them.
+    /// Three corner nodes of a triangle in the file.
     Corners([u64; 3]),
     /// A side (0…3) of an element.
     Side { element: u64, side: u8 },
-    /// All sides of an element that no other element shares.
+    /// All boundary sides of an element.
     Free { element: u64 },
 }
 
-/// An element that is no tetrahedron.
+/// A numbered element that is not a tetrahedron.
 pub enum Numbered {
     Triangle([u64; 3]),
     Line(Vec<u64>),
 }
 
-/// What a file holds, collected while it is read.
+/// Content of a file, collected while it is read.
 pub struct RawMesh {
-    /// Members that sets may still have: sets that name sets could grow without end.
+    /// Remaining number of set members: sets that contain sets could grow without limit.
     room: usize,
     nodes: Vec<[f64; 3]>,
     node_index: HashMap<u64, u32>,
@@ -46,14 +46,14 @@ pub struct RawMesh {
     pub surface_sets: BTreeMap<String, Vec<RawFace>>,
     numbered: HashMap<u64, Numbered>,
     ignored: BTreeMap<String, usize>,
-    /// In the numbers of the file.
+    /// Materials in the units of the file.
     pub materials: Vec<DeckMaterial>,
 }
 
 impl RawMesh {
-    /// An empty mesh from a file of this many bytes. A set's member takes eight bytes in memory
-    /// and at least two in the file unless ranges and groups repeat it; beyond a few repetitions of
-    /// everything the file is not believed.
+    /// An empty mesh of a file of this many bytes. A member of a set takes eight bytes in memory and
+    /// at least two in the file, unless ranges and groups repeat it. The number of members is limited to a few
+    /// repetitions of the whole file.
     pub fn new(file_length: usize) -> RawMesh {
         const REPETITIONS: usize = 4;
         const ANY_FILE: usize = 10_000;
@@ -73,7 +73,7 @@ impl RawMesh {
         }
     }
 
-    /// Accounts for `count` more members of sets, before they are made.
+    /// Reserves `count` more members of sets before they are stored.
     pub fn take_room(&mut self, source: &Source, at: usize, count: usize) -> Result<(), ReadError> {
         match self.room.checked_sub(count) {
             Some(room) => {
@@ -91,7 +91,7 @@ impl RawMesh {
         *self.ignored.entry(what).or_default() += 1;
     }
 
-    /// A numbered triangle or line, which sets of elements may name like a tetrahedron.
+    /// Adds a numbered triangle or line, which element sets may contain like a tetrahedron.
     pub fn add_numbered(
         &mut self,
         source: &Source,
@@ -105,7 +105,7 @@ impl RawMesh {
         Ok(())
     }
 
-    /// Triangles and lines named in sets of elements move to sets of surfaces and nodes.
+    /// Moves triangles and lines of element sets to surface and node sets.
     fn sort_numbered(&mut self) {
         if self.numbered.is_empty() {
             return;
@@ -175,7 +175,7 @@ impl RawMesh {
         Ok(())
     }
 
-    /// The mesh in metres, with all sets resolved.
+    /// Builds the mesh in metres, with all sets resolved.
     pub fn finish(mut self, source: &Source, unit: LengthUnit) -> Result<Loaded, ReadError> {
         let end = |problem: Problem| source.error(problem);
         if self.tets.is_empty() {
@@ -270,7 +270,7 @@ impl RawMesh {
                     *node = *self.node_index.get(&tag).ok_or_else(loose)?;
                 }
                 key.sort_unstable();
-                // A triangle between two elements stands for the first one's side.
+                // A triangle between two elements becomes a side of the first one.
                 into.push(owners(key).next().ok_or_else(loose)?);
             }
             RawFace::Side { element, side } => {
@@ -278,7 +278,7 @@ impl RawMesh {
             }
             RawFace::Free { element } => {
                 let element = element_of(element)?;
-                // Elements are few sides: look each up by its corners.
+                // Look up each side of the element by its corners.
                 let tet = &self.tets[element as usize];
                 for (side, corners) in crate::mesh::node_order::SIDES.iter().enumerate() {
                     let mut key = corners.map(|local| self.node_index[&tet.nodes[local]]);

@@ -1,10 +1,10 @@
-//! What is wrong with a file, and where.
+//! Errors of mesh files, with positions.
 
 use crate::mesh::error::MeshError;
 use std::fmt;
 use thiserror::Error;
 
-/// Where in a file: a line (from 1) of text, a byte (from 0) of binary data.
+/// Position in a file: a line (from 1) of text, a byte (from 0) of binary data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     Line(usize),
@@ -20,7 +20,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// A file that cannot be read as a mesh.
+/// Error of reading a mesh file.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{place}: {problem}")]
 pub struct ReadError {
@@ -34,57 +34,55 @@ pub enum Problem {
     Empty,
     #[error("this is not a {expected} file: it starts with {found:?}")]
     OtherFormat { expected: &'static str, found: String },
-    #[error("format version {found:?} is not read; save the mesh as version 4.1 or 2.2")]
+    #[error("format version {found:?} is not supported; save the mesh as version 4.1 or 2.2")]
     Version { found: String },
-    #[error("the file ends within {what}; it was cut off, get a whole copy")]
+    #[error("the file ends within {what}; it is truncated")]
     Truncated { what: String },
     #[error("{found:?} is not {what}")]
     Number { found: String, what: &'static str },
     #[error(
-        "the file claims {claimed} {what}, for which the {left} bytes that follow cannot do; the file is damaged or cut off"
+        "the file announces {claimed} {what}, but only {left} bytes follow; the file is damaged or truncated"
     )]
     Count { what: &'static str, claimed: u64, left: usize },
-    #[error(
-        "{expected} was expected here and {found:?} was found; the counts before it may be wrong"
-    )]
+    #[error("expected {expected}, found {found:?}; the counts before it may be wrong")]
     Expected { expected: String, found: String },
     #[error("the file has no {section} section")]
     MissingSection { section: &'static str },
-    #[error("elements of type {found} are not read; {}", in_place_of(found))]
+    #[error("elements of type {found} are not supported; {}", replacement_of(found))]
     ElementType { found: String },
     #[error(
-        "{this} nodes an element here and {first} before; a mesh has elements of one order only"
+        "elements with {this} nodes here and {first} nodes before; a mesh has elements of one order only"
     )]
     MixedOrders { first: usize, this: usize },
     #[error("{kind} {tag} is defined twice")]
     Duplicate { kind: &'static str, tag: u64 },
-    #[error("element {element} names node {node}, which the file does not define")]
+    #[error("element {element} refers to node {node}, which the file does not define")]
     UnknownNode { element: u64, node: u64 },
     #[error("element {element} has node {node} twice")]
     RepeatedNode { element: u64, node: u64 },
-    #[error("set \"{set}\" names {kind} {tag}, which the file does not define")]
+    #[error("set \"{set}\" refers to {kind} {tag}, which the file does not define")]
     UnknownMember { set: String, kind: &'static str, tag: u64 },
     #[error(
-        "the sets have more members than a file of {length} bytes can mean; ranges or groups repeat too much"
+        "the sets have too many members for a file of {length} bytes; ranges or groups repeat too often"
     )]
     TooManyMembers { length: usize },
-    #[error("set \"{name}\" is not defined before it is used")]
+    #[error("set \"{name}\" is used before it is defined")]
     UnknownSet { name: String },
-    #[error("set \"{set}\" has a face on nodes {nodes:?} that is no side of a tetrahedron")]
+    #[error("set \"{set}\" has a face with nodes {nodes:?} that is not a side of a tetrahedron")]
     LooseFace { set: String, nodes: [u64; 3] },
-    #[error("{what} is not read; {hint}")]
+    #[error("{what} is not supported; {hint}")]
     Unsupported { what: String, hint: &'static str },
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
 
-/// What to mesh with in place of a type of elements.
-fn in_place_of(found: &str) -> &'static str {
+/// Supported replacement of an element type.
+fn replacement_of(found: &str) -> &'static str {
     match found.trim_end_matches(['H', 'M', 'T', 'E']) {
         "C3D10" => {
-            "write C3D10: elements of ten nodes here do not lock where rubber keeps its volume"
+            "write C3D10: ten-node elements here do not lock with nearly incompressible rubber"
         }
-        "C3D4" => "write C3D4, or mesh with ten nodes for rubber",
+        "C3D4" => "write C3D4, or ten-node elements for rubber",
         _ => "mesh with tetrahedra of four or ten nodes",
     }
 }

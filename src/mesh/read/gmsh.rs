@@ -1,7 +1,7 @@
-//! Gmsh's `.msh`: header, names of physical groups, and which elements are understood.
+//! Reader of Gmsh's `.msh`: header, names of physical groups, supported elements.
 //!
 //! Physical volumes become element sets, surfaces become surface sets with their nodes, curves
-//! and points become node sets. A group without a name is called `physical_<dimension>_<tag>`.
+//! and points become node sets. A group without a name is named `physical_<dimension>_<tag>`.
 
 use crate::mesh::TetMesh;
 use crate::mesh::node_order::swap_gmsh;
@@ -11,7 +11,6 @@ use crate::mesh::read::source::{Coding, Source, excerpt};
 use crate::mesh::read::{LengthUnit, Loaded, Note, gmsh2, gmsh4};
 use std::collections::HashMap;
 
-/// Names of physical groups by dimension and tag.
 #[derive(Default)]
 pub(super) struct Names(HashMap<(i64, i64), String>);
 
@@ -25,7 +24,7 @@ impl Names {
 /// Reads a `.msh` file of version 4.1 or 2.2, text or binary.
 ///
 /// # Errors
-/// [`ReadError`] with the line, or in binary data the byte, where the file is wrong.
+/// [`ReadError`] with the line, or in binary data the byte, of the error.
 pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
     let mut source = Source::new(bytes);
     if bytes.trim_ascii().is_empty() {
@@ -79,7 +78,7 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
             }
             (other, _) => {
                 let end = [b"\n$End", other].concat();
-                // The line end before the marker belongs to what is skipped.
+                // The line end before the marker belongs to the skipped section.
                 source.skip_behind(&end)?;
                 source.line();
                 raw.ignore(format!("section ${}", excerpt(other)));
@@ -112,8 +111,8 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
     Ok(loaded)
 }
 
-/// Names of groups that share no element, the smallest first to claim theirs: a group of all is no volume
-/// beside its parts.
+/// Names of groups that share no element. Smaller groups take precedence, so that a group of all elements does
+/// not count in addition to its parts.
 fn volumes(mesh: &TetMesh) -> Vec<String> {
     let mut sets: Vec<(&String, &Vec<u32>)> = mesh.element_sets.iter().collect();
     sets.sort_by_key(|(_, elements)| elements.len());
@@ -130,7 +129,7 @@ fn volumes(mesh: &TetMesh) -> Vec<String> {
     names
 }
 
-/// Runs `read` with numbers in the file's coding, and goes back to text.
+/// Runs `read` with numbers in the file's coding, then returns to text.
 pub(super) fn in_coding<'a, T>(
     source: &mut Source<'a>,
     coding: Coding,
@@ -199,7 +198,7 @@ fn header(source: &mut Source) -> Result<(Version, Coding), ReadError> {
     }
 }
 
-/// Text in every version and coding: dimension, tag and a name in quotes a line.
+/// Reads names, which are text in every version and coding: dimension, tag and a quoted name per line.
 fn physical_names(source: &mut Source) -> Result<Names, ReadError> {
     let count: u64 = source.text_number("a count of names")?;
     source.line();
@@ -220,7 +219,6 @@ fn physical_names(source: &mut Source) -> Result<Names, ReadError> {
     Ok(names)
 }
 
-/// Kinds of elements a mesh of tetrahedra may come with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Point,
@@ -248,14 +246,14 @@ pub(super) fn kind(source: &Source, at: usize, code: i64) -> Result<(Kind, usize
                 20..=25 => "triangle of higher order; write second order at most",
                 26..=28 => "line of higher order; write second order at most",
                 29..=31 => "tetrahedron of higher order; write second order at most",
-                _ => "unknown to this reader",
+                _ => "unknown",
             };
             Err(source.error_at(at, Problem::ElementType { found: format!("{other} ({name})") }))
         }
     }
 }
 
-/// Puts one element into the mesh and the sets `groups`.
+/// Adds one element to the mesh and the sets `groups`.
 pub(super) fn place_element(
     source: &Source,
     at: usize,

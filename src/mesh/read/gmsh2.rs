@@ -1,4 +1,4 @@
-//! Sections of `.msh` version 2.2. Counts are text even where the rest is binary.
+//! Sections of `.msh` version 2.2. Counts are text even if the rest is binary.
 
 use crate::mesh::read::assemble::RawMesh;
 use crate::mesh::read::error::{Problem, ReadError};
@@ -53,7 +53,7 @@ pub(super) fn elements(
     in_coding(source, coding, |source| {
         let mut read = 0;
         while read < total {
-            // Binary data comes in runs of one type, text says the type of each element.
+            // Binary data has runs of one element type; text has the type of each element.
             let at = source.position();
             let text_tag = match coding {
                 Coding::Text => Some(tag(source, "the number of an element")?),
@@ -84,7 +84,7 @@ pub(super) fn elements(
                 }
                 groups.place(source, at, (kind, tag), &nodes[..node_count], physical, raw)?;
             }
-            // A run of nothing would never end.
+            // An empty run would never end.
             read += run.max(1);
         }
         if read == total {
@@ -101,7 +101,7 @@ fn tag_of(source: &mut Source) -> Result<u64, ReadError> {
 
 struct Groups<'n> {
     names: &'n Names,
-    /// Tetrahedra seen, by their nodes: one in several groups is written once for each.
+    /// Tetrahedra seen, by their nodes: an element of several groups occurs once for each.
     tets: HashMap<Vec<u64>, u64>,
 }
 

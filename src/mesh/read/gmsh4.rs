@@ -1,4 +1,4 @@
-//! Sections of `.msh` version 4.1. Text and binary differ in how numbers are written, not in which.
+//! Sections of `.msh` version 4.1. Text and binary contain the same numbers.
 
 use crate::mesh::read::assemble::RawMesh;
 use crate::mesh::read::error::{Problem, ReadError};
@@ -40,8 +40,7 @@ fn int_list(source: &mut Source, what: &'static str) -> Result<Vec<i64>, ReadErr
     (0..count).map(|_| source.int(what)).collect()
 }
 
-/// Number of blocks and number of things in all of them; the range of tags that follows says
-/// nothing that the tags do not.
+/// Number of blocks and total number of entries; the range of tags that follows is redundant.
 fn totals(source: &mut Source, what: &'static str) -> Result<(u64, u64), ReadError> {
     let blocks = source.size("a count of blocks")?;
     let total = source.size(count_of(what))?;

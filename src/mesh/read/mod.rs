@@ -1,10 +1,10 @@
-//! Meshes from files: Gmsh `.msh` 4.1 and 2.2, text and binary, and Abaqus `.inp`.
+//! Readers of mesh files: Gmsh `.msh` 4.1 and 2.2, text and binary, and Abaqus `.inp`.
 //!
-//! A reader takes bytes and the length unit the file was written in, which neither format states.
-//! It never trusts a count in a file: memory follows what was read, not what was announced.
+//! A reader takes bytes and the file's unit of length, which neither format states.
+//! Memory is allocated for data that was read, never for a count that the file announces.
 //!
-//! Own code, because the crates for these formats read one version each, or no physical groups,
-//! and none of them reports where a file is wrong.
+//! Existing crates for these formats read one version only, or no physical groups,
+//! and none reports the position of an error.
 pub mod abaqus;
 mod abaqus_lines;
 mod assemble;
@@ -21,7 +21,7 @@ pub use gmsh::read_gmsh;
 use crate::mesh::tet_mesh::TetMesh;
 use std::fmt;
 
-/// The unit of the numbers in a file.
+/// Unit of length in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LengthUnit {
     Metre,
@@ -36,7 +36,7 @@ impl LengthUnit {
         }
     }
 
-    /// Of a stress (Pa) and a density (kg/m³) in a consistent set with this unit of length.
+    /// Factors to Pa and kg/m³ in the consistent system of units with this unit of length.
     fn of_materials(self) -> [f64; 2] {
         match self {
             LengthUnit::Metre => [1.0, 1.0],
@@ -45,42 +45,42 @@ impl LengthUnit {
     }
 }
 
-/// A mesh as read, in metres, and what a person should know about the reading.
+/// A mesh as read, in metres, with notes for the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     pub mesh: TetMesh,
     pub notes: Vec<Note>,
     pub numbers: FileNumbers,
-    /// Of an input deck, in its order; the mesh takes none of them.
+    /// Materials of an input deck, in its order; the mesh does not use them.
     pub materials: Vec<DeckMaterial>,
 }
 
-/// A material as an input deck has it, in SI units: its numbers are taken as a consistent set with the file's
-/// unit of length, so that millimetres go with N, MPa and tonnes.
+/// A material of an input deck, in SI units. Its numbers are assumed to be in the consistent system with the file's
+/// unit of length: millimetres with N, MPa and tonnes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeckMaterial {
     pub name: String,
-    /// Young's modulus, Pa, and Poisson's ratio, of *ELASTIC for isotropic solids.
+    /// Young's modulus, Pa, and Poisson's ratio of an isotropic *ELASTIC.
     pub elastic: Option<[f64; 2]>,
-    /// kg/m³.
+    /// Density, kg/m³.
     pub density: Option<f64>,
 }
 
-/// Numbers of the file's own, in the order of the mesh: Gmsh's tags, Abaqus' labels.
+/// The file's numbers in the order of the mesh: Gmsh's tags, Abaqus' labels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FileNumbers {
     pub nodes: Vec<u64>,
     pub elements: Vec<u64>,
 }
 
-/// Something in a file that is no error and perhaps not meant.
+/// A note about something in a file that may not be intended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Note {
     /// Machine parts are rarely smaller than 1 mm or larger than 10 m.
     UnlikelySize { size: f64, unit: LengthUnit },
-    /// Groups of elements that may be meant as bodies of several materials.
+    /// Groups of elements that may be intended as bodies of different materials.
     SeveralVolumes { names: Vec<String> },
-    /// A part of the file that says nothing about the mesh: keyword or section.
+    /// A keyword or section that does not describe the mesh.
     Ignored { what: String, count: usize },
 }
 
@@ -89,17 +89,17 @@ impl fmt::Display for Note {
         match self {
             Note::UnlikelySize { size, unit: LengthUnit::Metre } => write!(
                 f,
-                "the mesh is {size:.4e} m across when its numbers are metres; as millimetres it would be {:.4e} m",
+                "the mesh has a size of {size:.4e} m with its numbers in metres; in millimetres it would be {:.4e} m",
                 size * 1e-3
             ),
             Note::UnlikelySize { size, unit: LengthUnit::Millimetre } => write!(
                 f,
-                "the mesh is {size:.4e} m across when its numbers are millimetres; as metres it would be {:.4e} m",
+                "the mesh has a size of {size:.4e} m with its numbers in millimetres; in metres it would be {:.4e} m",
                 size * 1e3
             ),
             Note::SeveralVolumes { names } => write!(
                 f,
-                "the file has {} volumes ({}): all become one body of the one material of the scene",
+                "the file has {} volumes ({}); all become one body with the material of the scene",
                 names.len(),
                 names.join(", ")
             ),
@@ -108,7 +108,7 @@ impl fmt::Display for Note {
     }
 }
 
-/// Sizes of machine parts, m.
+/// Usual sizes of machine parts, m.
 const LIKELY_SIZE: std::ops::RangeInclusive<f64> = 1e-3..=10.0;
 
 fn size_note(mesh: &TetMesh, unit: LengthUnit) -> Option<Note> {

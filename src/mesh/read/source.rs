@@ -1,8 +1,7 @@
-//! Bytes of a file, read as lines, words or binary numbers, with places for messages.
+//! Bytes of a file, read as lines, words or binary numbers, with positions for messages.
 
 use crate::mesh::read::error::{Place, Problem, ReadError};
 
-/// How numbers are written in a section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
     Text,
@@ -16,13 +15,12 @@ pub struct Source<'a> {
     pub coding: Coding,
 }
 
-/// Start of something found in a file, short enough for a message of one line.
+/// Start of a text from a file, short enough for a one-line message.
 pub fn excerpt(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]).into_owned()
 }
 
-/// What the number of these is called where it is none.
 pub fn count_of(what: &str) -> &'static str {
     match what {
         "nodes" => "a count of nodes (a whole number, 0 or more)",
@@ -47,7 +45,7 @@ impl<'a> Source<'a> {
         self.bytes.len() - self.at
     }
 
-    /// The place of byte `at` as a person finds it.
+    /// Position of byte `at`, for messages.
     pub fn place(&self, at: usize) -> Place {
         match self.coding {
             Coding::Text => {
@@ -120,7 +118,7 @@ impl<'a> Source<'a> {
         Ok(bytes)
     }
 
-    /// A whole number of four bytes, or a word.
+    /// Reads a four-byte integer, or a word.
     pub fn int(&mut self, what: &'static str) -> Result<i64, ReadError> {
         match self.coding {
             Coding::Text => self.text_number(what),
@@ -128,7 +126,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A whole number of eight bytes without sign, or a word.
+    /// Reads an unsigned eight-byte integer, or a word.
     pub fn size(&mut self, what: &'static str) -> Result<u64, ReadError> {
         match self.coding {
             Coding::Text => self.text_number(what),
@@ -136,7 +134,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A finite number of eight bytes, or a word.
+    /// Reads a finite eight-byte number, or a word.
     pub fn double(&mut self, what: &'static str) -> Result<f64, ReadError> {
         let start = self.at;
         let number: f64 = match self.coding {
@@ -149,7 +147,7 @@ impl<'a> Source<'a> {
         Err(self.error_at(start, Problem::Number { found: number.to_string(), what }))
     }
 
-    /// Refuses a count of things that take at least `least` bytes each and cannot all be there.
+    /// Refuses a count of entries of at least `least` bytes each that exceeds the remaining bytes.
     pub fn expect_room(
         &self,
         what: &'static str,
@@ -157,14 +155,14 @@ impl<'a> Source<'a> {
         least: u64,
     ) -> Result<(), ReadError> {
         let left = self.left();
-        // The last number of a text needs no blank behind it.
+        // The last number of a text needs no blank after it.
         if claimed.saturating_mul(least) <= left as u64 + 1 {
             return Ok(());
         }
         Err(self.error(Problem::Count { what, claimed, left }))
     }
 
-    /// Goes behind the next line that starts with `marker`; nothing before it is read.
+    /// Skips to the end of the next line that starts with `marker`.
     pub fn skip_behind(&mut self, marker: &[u8]) -> Result<(), ReadError> {
         let start = self.at;
         let found = self.bytes[start..].windows(marker.len()).position(|bytes| bytes == marker);

@@ -1,4 +1,4 @@
-//! `.inp` as Abaqus and CalculiX read it; numbers from 1, lengths in m.
+//! Writer of `.inp` for Abaqus and CalculiX; numbers from 1, lengths in m.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::tet_mesh::{Order, TetMesh};
@@ -7,19 +7,18 @@ use std::fmt::Write;
 /// Numbers on a data line; the formats allow 16.
 const PER_LINE: usize = 12;
 
-/// CalculiX reads no number of more characters than this.
+/// Longest number that CalculiX reads, characters.
 const NUMBER_WIDTH: usize = 20;
 
-/// Sets that every file has.
 const ALL_NODES: &str = "all_nodes";
 const ALL_ELEMENTS: &str = "all_elements";
 
-/// Nodes, elements (C3D4 or C3D10) and all sets of `mesh`. Surface sets become element surfaces.
+/// Writes nodes, elements (C3D4 or C3D10) and all sets of `mesh`. Surface sets become element surfaces.
 ///
-/// Coordinates are written within CalculiX' 20 characters: most keep every bit.
+/// Coordinates have at most CalculiX' 20 characters; most are exact.
 ///
 /// # Errors
-/// [`MeshError::Name`] for a set whose name the format cannot hold.
+/// [`MeshError::Name`] for a set whose name the format does not allow.
 pub fn write_abaqus(mesh: &TetMesh) -> Result<String, MeshError> {
     let names =
         mesh.node_sets.keys().chain(mesh.element_sets.keys()).chain(mesh.surface_sets.keys());
@@ -61,7 +60,7 @@ pub fn write_abaqus(mesh: &TetMesh) -> Result<String, MeshError> {
     Ok(text)
 }
 
-/// A number in the shortest form that keeps its bits, or with as many digits as fit.
+/// A number in the shortest exact form, or with as many digits as fit.
 fn number(x: f64) -> String {
     let fits = |text: &String| text.len() <= NUMBER_WIDTH;
     let exact = [format!("{x}"), format!("{x:e}")].into_iter().filter(fits).min_by_key(String::len);
@@ -82,7 +81,7 @@ fn numbers(out: &mut String, set: &[u32]) {
     }
 }
 
-/// Letters, digits, `_`, `-` and `.`, a letter first, at most 80 (CalculiX).
+/// Allows letters, digits, `_`, `-` and `.`, a letter first, at most 80 characters (CalculiX).
 fn check_name(name: &str) -> Result<(), MeshError> {
     let fail = |why| Err(MeshError::Name { name: name.to_string(), why });
     if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -97,10 +96,13 @@ fn check_name(name: &str) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// A set under a name the file uses itself must be that very set, as after reading such a file.
+/// A set with a name that the file uses for all nodes or elements must contain all, as after reading such a file.
 fn check_own_name(name: &str, set: Option<&Vec<u32>>, count: usize) -> Result<(), MeshError> {
     if set.is_none_or(|set| set.len() == count) {
         return Ok(());
     }
-    Err(MeshError::Name { name: name.to_string(), why: "the file uses it for everything" })
+    Err(MeshError::Name {
+        name: name.to_string(),
+        why: "the file uses it for all nodes or elements",
+    })
 }

@@ -1,7 +1,7 @@
-//! `.msh` 4.1 as text, as Gmsh reads it; tags from 1, lengths in m.
+//! Writer of Gmsh's `.msh` 4.1 as text; tags from 1, lengths in m.
 //!
-//! Gmsh has no sets but physical groups, and a group is made of geometric entities. Members that are
-//! in the same sets make an entity; nodes of a set are elements of one point.
+//! Gmsh has physical groups of geometric entities instead of sets. Members that belong to
+//! the same sets form an entity; nodes of a set are written as point elements.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::node_order::swap_gmsh;
@@ -9,16 +9,16 @@ use crate::mesh::tet_mesh::{Elements, Order, TetMesh};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// The physical groups that each member of a dimension is in, by tag, and the members.
+/// Entities of a dimension: the tags of their physical groups, and their members.
 type Entities = BTreeMap<Vec<usize>, Vec<Vec<u32>>>;
 
-/// Nodes, elements and all sets of `mesh`; every coordinate keeps its bits. Element sets become
+/// Writes nodes, elements and all sets of `mesh`; coordinates are exact. Element sets become
 /// physical volumes, surface sets physical surfaces, and node sets physical points unless a surface
-/// set of the same name has just these nodes. Elements are written entity by entity, so that
-/// elements of sets may change their places.
+/// set of the same name has exactly these nodes. Elements are written entity by entity, so their
+/// order may change.
 ///
 /// # Errors
-/// [`MeshError::Name`] for a set whose name the format cannot hold, or a node set that differs
+/// [`MeshError::Name`] for a set whose name the format does not allow, or a node set that differs
 /// from the nodes of the surface set of the same name.
 pub fn write_gmsh(mesh: &TetMesh) -> Result<String, MeshError> {
     let mut points = Vec::new();
@@ -44,7 +44,7 @@ pub fn write_gmsh(mesh: &TetMesh) -> Result<String, MeshError> {
         check_name(name)?;
     }
 
-    // Physical tags count through all dimensions, in the order of `groups`.
+    // Physical tags are consecutive over all dimensions, in the order of `groups`.
     let mut tag = 0;
     let mut next = || {
         tag += 1;
@@ -113,7 +113,7 @@ fn tetrahedron(mesh: &TetMesh, element: usize) -> Vec<u32> {
     nodes.into_iter().map(|node| node + 1).collect()
 }
 
-/// Points with the place of their first node, surfaces and volumes with the box of the whole mesh.
+/// Points with the position of their first node, surfaces and volumes with the bounding box of the mesh.
 fn write_entities(out: &mut String, mesh: &TetMesh, of: [&Entities; 3]) {
     let [points, surfaces, volumes] = of;
     let (low, high) = mesh.bounding_box();
@@ -136,7 +136,7 @@ fn write_entities(out: &mut String, mesh: &TetMesh, of: [&Entities; 3]) {
     line(out, format_args!("$EndEntities"));
 }
 
-/// All nodes as those of the first volume.
+/// Writes all nodes as those of the first volume.
 fn write_nodes(out: &mut String, mesh: &TetMesh) {
     let count = mesh.nodes.len();
     line(out, format_args!("$Nodes\n1 {count} 1 {count}\n3 1 0 {count}"));
@@ -149,7 +149,7 @@ fn write_nodes(out: &mut String, mesh: &TetMesh) {
     line(out, format_args!("$EndNodes"));
 }
 
-/// Dimension, Gmsh's number of the kind of element, entities.
+/// Writes elements; each entry has the dimension, Gmsh's element type and the entities.
 fn write_elements(out: &mut String, of: [(usize, usize, &Entities); 3]) {
     let blocks: usize = of.iter().map(|(_, _, entities)| entities.len()).sum();
     let members = of.iter().flat_map(|(_, _, entities)| entities.values());
@@ -175,7 +175,7 @@ fn line(out: &mut String, text: std::fmt::Arguments) {
     out.push('\n');
 }
 
-/// At most 127 characters (Gmsh), none of which ends the name.
+/// Allows at most 127 characters (Gmsh), without quotes and control characters.
 fn check_name(name: &str) -> Result<(), MeshError> {
     let fail = |why| Err(MeshError::Name { name: name.to_string(), why });
     if name.is_empty() || name.len() > 127 {

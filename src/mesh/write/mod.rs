@@ -1,4 +1,4 @@
-//! Meshes and fields into files: Abaqus/CalculiX `.inp`, Gmsh `.msh`, ParaView's `.vtu` and `.pvd`.
+//! Writers of meshes and fields: Abaqus/CalculiX `.inp`, Gmsh `.msh`, ParaView's `.vtu` and `.pvd`.
 mod abaqus;
 mod gmsh;
 mod vtu;
@@ -7,7 +7,7 @@ pub use abaqus::write_abaqus;
 pub use gmsh::write_gmsh;
 pub use vtu::{Field, write_pvd, write_vtu};
 
-/// Whether XML 1.0 (production 2) has a way to write this character.
+/// Returns whether XML 1.0 (production 2) allows this character.
 pub fn is_xml_character(c: char) -> bool {
     matches!(c, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..)
 }

@@ -1,12 +1,12 @@
-//! `.vtu` (VTK's unstructured grid) with fields, and `.pvd`, the list of such files over time.
+//! Writer of `.vtu` (VTK's unstructured grid) with fields, and of `.pvd`, the list of such files over time.
 //!
-//! Numbers stand as raw little-endian bytes behind the markup: exact, small and fast.
+//! Numbers are raw little-endian bytes after the markup, which is exact and compact.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::tet_mesh::{Order, TetMesh};
 use crate::mesh::write::is_xml_character;
 
-/// Values at nodes or in elements: `components` numbers for each, one after the other.
+/// A field: `components` consecutive values for each node or element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field<'a> {
     pub name: &'a str,
@@ -33,14 +33,14 @@ impl Field<'_> {
     }
 }
 
-/// Names and file names stand between quotes in the markup.
+/// Checks a name for the markup, where it is an attribute in quotes.
 fn check_name(name: &str) -> Result<(), MeshError> {
     if !name.is_empty()
         && !name.contains(|c: char| c.is_control() || !is_xml_character(c) || "<>&\"'".contains(c))
     {
         return Ok(());
     }
-    let why = "it must not be empty nor hold <, >, &, quotes, control or non-characters";
+    let why = "it must not be empty or contain <, >, &, quotes, control or non-characters";
     Err(MeshError::Name { name: name.to_string(), why })
 }
 
@@ -51,7 +51,7 @@ struct Appended {
 }
 
 impl Appended {
-    /// Adds an array with its length in front; returns its element in the markup.
+    /// Adds an array preceded by its length; returns its XML element.
     fn array(&mut self, kind: &str, name: &str, components: usize, data: &[u8]) -> String {
         let offset = self.bytes.len();
         self.bytes.extend((data.len() as u64).to_le_bytes());
@@ -67,7 +67,7 @@ impl Appended {
     }
 }
 
-/// The bytes of a `.vtu` file: the mesh, `point_data` at its nodes, `cell_data` in its elements.
+/// Writes a `.vtu` file: the mesh, `point_data` at its nodes, `cell_data` in its elements.
 ///
 /// # Errors
 /// [`MeshError::FieldLength`], [`MeshError::FieldNotFinite`], [`MeshError::Name`].
@@ -116,10 +116,10 @@ pub fn write_vtu(
     Ok(file)
 }
 
-/// A `.pvd` file: times in s with the names of their `.vtu` files, relative to it.
+/// Writes a `.pvd` file: times in s with the names of their `.vtu` files, relative to it.
 ///
 /// # Errors
-/// [`MeshError::Name`] for a file name the markup cannot hold, [`MeshError::Dimension`] for a time
+/// [`MeshError::Name`] for a file name that the markup does not allow, [`MeshError::Dimension`] for a time
 /// that is not finite.
 pub fn write_pvd(steps: &[(f64, &str)]) -> Result<String, MeshError> {
     let mut text = String::from(
@@ -127,11 +127,11 @@ pub fn write_pvd(steps: &[(f64, &str)]) -> Result<String, MeshError> {
     );
     let mut part = 0;
     for (index, &(time, file)) in steps.iter().enumerate() {
-        // Files of one time are parts of one picture.
+        // Files with the same time are parts of one data set.
         part = if index > 0 && steps[index - 1].0 == time { part + 1 } else { 0 };
         check_name(file)?;
         if !time.is_finite() {
-            let allowed = "the finite numbers".to_string();
+            let allowed = "finite numbers".to_string();
             return Err(MeshError::Dimension { what: "time", value: time, unit: "", allowed });
         }
         text += &format!("    <DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>\n");

@@ -1,6 +1,6 @@
-//! The key table: every key a scene may hold, what it means and what it may be.
+//! The key table: every key of a scene with its kind, range, default and meaning.
 //!
-//! Reading, the refusal of unknown keys, `docs/scene.md` and the JSON Schema all follow this table.
+//! The reader, the refusal of unknown keys, `docs/scene.md` and the JSON Schema follow this table.
 
 use crate::scene::tables::{assembly, bearing, dynamics, housing, sensor, shaft, solid};
 use crate::scene::text::units::Dimension;
@@ -21,7 +21,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// Whether `value`, in SI for a quantity of `dimension`, lies inside; NaN does not.
+    /// Returns whether `value`, in SI for a quantity of `dimension`, is in the interval; false for NaN.
     pub fn contains(&self, value: f64, dimension: Option<Dimension>) -> bool {
         let unit = dimension.and_then(|dimension| dimension.find(self.unit));
         let scale = unit.map_or(1.0, |unit| unit.scale.factor());
@@ -48,7 +48,6 @@ impl std::fmt::Display for Range {
     }
 }
 
-/// What a key's value looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     Text,
@@ -57,23 +56,21 @@ pub enum Kind {
         low: i64,
         high: i64,
     },
-    /// One of these words.
     Choice(&'static [&'static str]),
-    /// A list of different words out of these.
+    /// A list of distinct words of this list.
     Choices(&'static [&'static str]),
-    /// A number without unit.
     Number(Range),
     /// A string of a number and a unit.
     Quantity(Dimension, Range),
     /// A list of three quantities along X, Y and Z.
     Vector(Dimension, Range),
-    /// A quantity, or a table that says how it changes over time.
+    /// A quantity, or a table that describes it over time.
     Profile(Dimension, Range),
-    /// A value of one of these kinds, plain numbers or quantities; another key says which.
+    /// A plain number or quantity of one of these kinds; another key selects which.
     Either(&'static [Kind]),
     /// A list of quantities, strictly increasing.
     Quantities(Dimension, Range),
-    /// `true` for held at zero, or a profile.
+    /// `true` for fixed at zero, or a profile.
     TrueOrProfile(Dimension, Range),
 }
 
@@ -81,28 +78,27 @@ pub enum Kind {
 pub enum Need {
     Required,
     Optional,
-    /// Required or refused depending on other keys; the text says how.
+    /// Required, defaulted or refused depending on other keys, as the text states.
     Depends(&'static str),
-    /// Absent means `value`; the reason is shown with the results.
+    /// `value` if absent; the reason is shown with the results.
     Default {
         value: &'static str,
         reason: &'static str,
     },
 }
 
-/// One row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     pub path: &'static str,
     pub kind: Kind,
     pub need: Need,
-    /// Keys of one table with the same non-empty group exclude each other. A key that is a table as
-    /// well excludes that table's keys of its group.
+    /// Keys of one table with the same non-empty group exclude each other. A key that may also be a
+    /// table excludes that table's keys of its group.
     pub group: &'static str,
     pub doc: &'static str,
-    /// What to do about a value outside the range.
+    /// Advice for a value outside the range.
     pub hint: &'static str,
-    /// An example of a value, without quotes; empty for the usual one of its kind.
+    /// Example value without quotes; empty for the usual one of its kind.
     example: &'static str,
 }
 
@@ -126,7 +122,7 @@ impl Key {
         self
     }
 
-    /// Path of the table that holds the key.
+    /// Path of the table that contains the key.
     pub fn table(&self) -> &'static str {
         self.path.rsplit_once('.').map_or("", |(table, _)| table)
     }
@@ -136,7 +132,7 @@ impl Key {
         self.path.rsplit_once('.').map_or(self.path, |(_, name)| name)
     }
 
-    /// Whether it belongs to a list of tables and so has no single value.
+    /// Returns whether the key belongs to a list of tables and so has no single value.
     pub fn in_list(&self) -> bool {
         find_table(self.table()).is_some_and(|table| table.list)
     }
@@ -153,14 +149,14 @@ impl Key {
         })
     }
 
-    /// The unit that its values are usually written in: that of its example, or of its bounds.
+    /// Usual unit of the key's values: that of its example, or of its bounds.
     pub fn usual_unit(&self, dimension: Dimension, range: Range) -> &'static str {
         let of = |example: &'static str| Some(parse_quantity(example, dimension).ok()?.unit);
         let unit = of(self.example).or_else(|| of(usual(dimension, range)));
         unit.unwrap_or(range.unit)
     }
 
-    /// An example of a value, as it is written in TOML.
+    /// Example value in TOML syntax.
     pub fn example(&self) -> String {
         let or = |usual: &'static str| if self.example.is_empty() { usual } else { self.example };
         match self.kind {
@@ -185,7 +181,6 @@ impl Key {
     }
 }
 
-/// A usual value of a dimension.
 fn usual(dimension: Dimension, range: Range) -> &'static str {
     match dimension {
         Length if range.unit == "um" => "5 um",
@@ -229,13 +224,13 @@ pub(crate) const fn above(low: f64, high: f64, unit: &'static str) -> Range {
     Range { low, high, low_included: false, high_included: true, unit }
 }
 
-/// A table that holds keys, with what to write in it.
+/// A table of a scene, with an example.
 #[derive(Clone, Copy)]
 pub struct Table {
     pub path: &'static str,
     pub doc: &'static str,
     pub example: &'static str,
-    /// Whether it stands any number of times, `[[path]]`.
+    /// True for a list of tables, `[[path]]`.
     pub list: bool,
 }
 
@@ -243,7 +238,6 @@ pub(crate) const fn table(path: &'static str, doc: &'static str, example: &'stat
     Table { path, doc, example, list: false }
 }
 
-/// A list of tables.
 pub(crate) const fn list_table(
     path: &'static str,
     doc: &'static str,
@@ -255,7 +249,7 @@ pub(crate) const fn list_table(
 /// Every key, in the order of the reference.
 pub static KEYS: &[Key] = &ALL_KEYS;
 
-/// Every table, in the order of the reference. `assumptions` and `sweep` have keys of the user's.
+/// Every table, in the order of the reference. `assumptions` and `sweep` have user-defined keys.
 pub static TABLES: &[Table] = &ALL_TABLES;
 
 const PARTS: [&[Key]; 7] = [
@@ -290,7 +284,7 @@ const fn count<T>(parts: &[&[T]]) -> usize {
     sum
 }
 
-/// All rows of the parts in one array, which `first` fills before they come.
+/// All rows of the parts in one array, initialised with `first`.
 const fn joined<T: Copy, const N: usize>(parts: &[&[T]], first: T) -> [T; N] {
     let mut all = [first; N];
     let (mut at, mut part) = (0, 0);
@@ -314,26 +308,26 @@ pub fn find(path: &str) -> Option<(usize, &'static Key)> {
     INDEX.get(path).map(|&i| (i, &KEYS[i]))
 }
 
-/// Tables that may stand several times, each with a name: `[bearing.left]`. What stands in the table
-/// without a name is what all of them inherit.
+/// Tables that may occur several times, each with a name: `[bearing.left]`. All of them inherit the keys
+/// of the table without a name.
 pub const NAMED: [&str; 8] =
     ["bearing", "inner_race", "outer_race", "body", "spring", "housing", "solid", "sensor"];
 
-/// Those of them that go by names of their own; all others by those of bearings.
+/// Tables of [`NAMED`] with names of their own; all others use the names of bearings.
 pub const OWN_NAMES: [&str; 3] = ["body", "spring", "sensor"];
 
-/// Where a dotted path leads.
+/// Key that a dotted path refers to.
 #[derive(Clone, Copy, Debug)]
 pub struct Leads<'p> {
     pub row: usize,
     pub key: &'static Key,
-    /// Name of the table it leads into: `left` of `bearing.left.clearance.radial`.
+    /// Name of the table: `left` of `bearing.left.clearance.radial`.
     pub name: Option<&'p str>,
-    /// Which one of a list of tables, counted from 1: 2 of `body.shaft.beam.disc.2.mass`.
+    /// Index in a list of tables, counted from 1: 2 of `body.shaft.beam.disc.2.mass`.
     pub item: Option<usize>,
 }
 
-/// The key that a path leads to, with or without a name and a number in a list.
+/// Finds the key of a path with or without a table name and an index in a list.
 pub fn find_named(path: &str) -> Option<Leads<'_>> {
     let mut parts: Vec<&str> = path.split('.').collect();
     let is_number = |part: &&str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
@@ -342,7 +336,7 @@ pub fn find_named(path: &str) -> Option<Leads<'_>> {
         Some(at) => Some(parts.remove(at).parse().ok()?),
         None => None,
     };
-    // Names of keys of a list follow its number at once.
+    // The key's name directly follows the index in a list.
     let fits = |key: &Key, parts: usize| at.is_none_or(|at| key.in_list() && at == parts - 1);
     if let Some((row, key)) = find(&parts.join(".")).filter(|(_, key)| fits(key, parts.len())) {
         return Some(Leads { row, key, name: None, item });
@@ -356,7 +350,7 @@ pub fn find_named(path: &str) -> Option<Leads<'_>> {
     Some(Leads { row, key, name: Some(name), item })
 }
 
-/// A path without what may be the name of a table, and that: `spring.stiffness` and `mount` of `spring.mount.stiffness`.
+/// Splits a table name from a path: `spring.stiffness` and `mount` from `spring.mount.stiffness`.
 pub fn without_name(path: &str) -> (String, Option<&str>) {
     let parts: Vec<&str> = path.split('.').collect();
     match parts[..] {
@@ -392,7 +386,7 @@ pub fn children(path: &str) -> Vec<&'static str> {
     names
 }
 
-/// Words of other programs for keys here.
+/// Common synonyms of keys.
 const OTHER_WORDS: [(&str, &str); 6] = [
     ("force", "load"),
     ("couple", "moment"),
@@ -402,8 +396,8 @@ const OTHER_WORDS: [(&str, &str); 6] = [
     ("velocity", "speed"),
 ];
 
-/// The key or table an unknown key of the table `path` was probably meant to be: a similar one
-/// beside it, else one of the same or nearly the same name in another table.
+/// The key or table that was probably meant by the unknown key `name` of the table `path`: a similar one
+/// of the same table, else one of the same or nearly the same name in another table.
 pub fn nearest_key(path: &str, name: &str) -> Option<String> {
     let dotted = |name: &str| match path {
         "" => name.to_string(),
@@ -421,27 +415,27 @@ pub fn nearest_key(path: &str, name: &str) -> Option<String> {
         let tables = TABLES.iter().filter_map(|table| table.path.rsplit('.').next());
         nearest(last, tables, 0.8)
     });
-    // Of several keys with that name, the one whose whole path is most alike.
+    // Of several keys with that name, take the most similar whole path.
     let full = dotted(name);
     let found = elsewhere.and_then(|name| {
         let known = || KEYS.iter().map(|key| key.path).chain(TABLES.iter().map(|table| table.path));
         let is_name = move |path: &&str| path.rsplit('.').next() == Some(name);
         let same_name = || known().filter(is_name);
-        // One of the same part of the scene, if there is any.
+        // Prefer keys under the same top-level table.
         let top = |path: &str| path.split('.').next().unwrap_or_default().to_string();
-        let beside = same_name().filter(|path| top(path) == top(&full));
-        nearest(&full, beside, 0.0).or_else(|| nearest(&full, same_name(), 0.0))
+        let same_top = same_name().filter(|path| top(path) == top(&full));
+        nearest(&full, same_top, 0.0).or_else(|| nearest(&full, same_name(), 0.0))
     });
     found.map(str::to_string)
 }
 
-/// The candidate most like `word` (ignoring case), if at least `similarity` (0 to 1) alike.
+/// The candidate most similar to `word` (ignoring case); `None` if all are below `similarity` (0 to 1).
 pub fn nearest<'c>(
     word: &str,
     candidates: impl Iterator<Item = &'c str>,
     similarity: f64,
 ) -> Option<&'c str> {
-    // Comparing takes time proportional to the length; nobody mistypes a key into 60 letters.
+    // Bounds the time of the comparison; a mistyped key is not this long.
     if word.len() > 60 {
         return None;
     }

@@ -1,4 +1,4 @@
-//! The key table: every key of a scene with its unit, range and meaning; schema and manual follow from it.
+//! The key table: every key of a scene with its unit, range and meaning; source of schema and manual.
 
 pub mod assembly;
 pub mod bearing;

@@ -9,8 +9,8 @@ use std::fmt::Write;
 
 const NUMBER_PATTERN: &str = r"[+\-\u2212]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+\-]?[0-9]+)?";
 
-/// JSON Schema (draft 2020-12) of a scene. Relations between keys that need arithmetic, such as a
-/// ball that fits its pocket, are left to `bearing check`.
+/// JSON Schema (draft 2020-12) of a scene. Relations between values of keys, such as a ball that fits
+/// its pocket, are checked by `bearing check` only.
 pub fn json_schema() -> Value {
     let mut schema = table_schema("");
     schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
@@ -32,12 +32,10 @@ fn definition_name(dimension: Dimension) -> String {
     noun(dimension).replace(' ', "_")
 }
 
-/// "length", "rotation speed".
 pub(crate) fn noun(dimension: Dimension) -> &'static str {
     dimension.name().split_once(' ').map_or(dimension.name(), |(_, noun)| noun)
 }
 
-/// A string of number and unit.
 fn quantity_schema(dimension: Dimension) -> Value {
     let spellings: Vec<String> = dimension
         .units()
@@ -101,7 +99,7 @@ fn table_schema(path: &str) -> Map<String, Value> {
         schema.insert("required".into(), Value::Array(required));
     }
     if path.is_empty() {
-        // Both of a bearing in its housing.
+        // A bearing in a housing has both.
         let any_of = ["bearing", "solid"].map(|part| json!({ "required": [part] }));
         exclusive.push(json!({ "anyOf": any_of }));
     }
@@ -118,8 +116,8 @@ fn table_schema(path: &str) -> Map<String, Value> {
     schema
 }
 
-/// A table that may stand several times, each with a name. What stands beside names is what all inherit, so
-/// that what one thing needs is needed there only where there is no name.
+/// Schema of a table that may occur several times, each with a name. All inherit the keys without a name, so
+/// required keys are required there only if there is no named table.
 fn named_schema(path: &str) -> Value {
     let plain = table_schema(path);
     let known = keys::children(path);
@@ -136,7 +134,7 @@ fn named_schema(path: &str) -> Value {
     }
     let only_named = keys::OWN_NAMES.contains(&path);
     let mut named = if only_named { plain.clone() } else { inherited.clone() };
-    // What one needs may stand beside the names.
+    // Required keys may be inherited.
     named.remove("required");
     inherited.insert("additionalProperties".into(), Value::Object(named));
     if !only_named {
@@ -150,7 +148,7 @@ fn row(path: &str) -> Option<usize> {
     keys::find(path).map(|(row, _)| row)
 }
 
-/// What the two kinds of bearing need and refuse.
+/// Keys that each kind of bearing requires and refuses.
 fn kinds_schema() -> Value {
     let no_radius = json!({ "properties": { "radius": false } });
     json!({
@@ -174,7 +172,7 @@ fn free_table(path: &str, values: Value) -> Value {
 fn sweep_schema() -> Value {
     let single = json!({ "type": ["string", "number", "boolean"] });
     json!({
-        "description": "a list of values, or a range such as \"0 deg .. 45 deg / 91\"; a table stands for a dotted key",
+        "description": "a list of values, or a range such as \"0 deg .. 45 deg / 91\"; a table is read as a dotted key",
         "anyOf": [
             { "type": "array", "minItems": 1, "items": single },
             { "type": "string" },
@@ -183,7 +181,7 @@ fn sweep_schema() -> Value {
     })
 }
 
-/// A quantity as text, or a table of keys.
+/// Schema of a key that may be a quantity or a table of keys.
 fn key_or_table_schema(key: &'static Key, path: &str) -> Value {
     let mut schema = table_schema(path);
     let quantity = key_schema(key);
@@ -205,7 +203,6 @@ fn profile_name(dimension: Dimension) -> String {
     format!("{}_profile", definition_name(dimension))
 }
 
-/// A quantity, or one of the tables of [`FORMS`].
 fn profile_schema(dimension: Dimension) -> Value {
     let own = reference(dimension);
     let forms = FORMS.iter().map(|form| {

@@ -1,6 +1,6 @@
-//! A scene on a base: what another file says, with the scene's own keys laid over it.
+//! Inheritance of scenes: a scene with `base` overrides keys of another file.
 //!
-//! Both are read as one text, the scene's own before that of its base, so that every error says in which file and line it is.
+//! Offsets count through both texts, the scene's own first, so that every error has its file and line.
 
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::tables::keys;
@@ -15,13 +15,13 @@ use std::sync::Arc;
 
 /// Key of the base's file.
 pub(crate) const BASE: &str = "base";
-/// Key of what the base says and the scene has not.
+/// Key of the parts of the base that are not inherited.
 pub(crate) const WITHOUT: &str = "without";
-/// Bases may have bases, so many in all.
+/// Maximum number of bases in a chain.
 const DEEPEST: usize = 8;
 
 impl Document {
-    /// Reads the base that the scene names, if it does, and lays the scene's own keys over it. `above` scenes are on this one.
+    /// Reads the scene's base, if any, and overrides its keys. `above` is the number of scenes that inherit this one.
     pub(crate) fn on_base(self, above: usize) -> Result<Document, SceneError> {
         let Some(Checked::Text(name)) = self.value(BASE) else {
             return match self.is_given(WITHOUT) {
@@ -32,22 +32,22 @@ impl Document {
             };
         };
         if above == DEEPEST {
-            let reason = format!("this is base number {}, and up to {DEEPEST} are read", above + 1);
-            return Err(self.refused(BASE, reason, "do they go round in a circle?"));
+            let reason = format!("this is base number {}; at most {DEEPEST} are read", above + 1);
+            return Err(self.refused(BASE, reason, "is the chain of bases circular?"));
         }
         let path = self.folder().join(name);
         let unread = |error: SceneError| {
             let reason = format!("{} cannot be read: {}", path.display(), error.problem);
-            self.refused(BASE, reason, "a relative name starts at the scene's folder")
+            self.refused(BASE, reason, "a relative path starts at the scene's folder")
         };
         let (mut source, format) = source::read(&path).map_err(unread)?;
         source.is_fixed = Path::new(name).is_absolute();
         let mut base = Document::of_source(source, format, above + 1)?;
         if let Some(Checked::Text(paths)) = self.value(WITHOUT) {
             for path in paths.split(',').map(str::trim) {
-                if !base.take_away(path) {
-                    let reason = format!("{} says nothing of {path:?}", base.name());
-                    let advice = "name keys, tables or names of the base, with commas between";
+                if !base.remove(path) {
+                    let reason = format!("{} does not contain {path:?}", base.name());
+                    let advice = "list keys, tables or named tables of the base, with commas";
                     return Err(self.refused(WITHOUT, reason, advice));
                 }
             }
@@ -55,13 +55,12 @@ impl Document {
         self.laid_over(base)
     }
 
-    /// Folder of the scene's file.
     fn folder(&self) -> &Path {
         Path::new(self.name()).parent().unwrap_or(Path::new(""))
     }
 
-    /// A file that the value of a key names, from the folder of the file that the value stands in, and the same from the scene's unless
-    /// its path begins at the root.
+    /// Path of the file named by a key's value, relative to the file that contains the key; and the same relative to the scene's
+    /// folder, for messages, unless it is absolute.
     pub(crate) fn file(&self, key: &str, name: &str) -> (PathBuf, String) {
         let from = self.place_of_key(key).file;
         let path = Path::new(&from).parent().unwrap_or(Path::new("")).join(name);
@@ -77,7 +76,7 @@ impl Document {
         own.unwrap_or(&path).display().to_string()
     }
 
-    /// The scene and its bases, and whether a path from the root leads to them.
+    /// The scene and its bases, each with true if it is named by an absolute path.
     fn sources(&self) -> impl Iterator<Item = (&Source, bool)> {
         let first = (&*self.source, false);
         std::iter::successors(Some(first), |(of, fixed)| {
@@ -86,7 +85,7 @@ impl Document {
         })
     }
 
-    /// This scene over its base.
+    /// Merges this scene into its base; the scene's keys win.
     fn laid_over(self, mut base: Document) -> Result<Document, SceneError> {
         base.shift(self.source.length());
         let own = Arc::unwrap_or_clone(self.source);
@@ -107,35 +106,35 @@ impl Document {
         if self.layer.tables.iter().any(|(table, _)| *table == "sweep") {
             base.sweep = self.sweep;
         }
-        base.refuse_unheard(&self.layer)?;
+        base.refuse_without_effect(&self.layer)?;
         Ok(base)
     }
 
-    /// Takes away a key, a table with all that is in it, or all that has a name (`sensor.top`); whether there was anything.
-    fn take_away(&mut self, path: &str) -> bool {
+    /// Removes a key, a table with its contents, or a named table (`sensor.top`); returns whether anything was removed.
+    fn remove(&mut self, path: &str) -> bool {
         if [BASE, WITHOUT].contains(&path) {
             return false;
         }
         let (named, assumed, swept) = (self.named.len(), self.assumptions.len(), self.sweep.len());
-        // A whole table goes with those that have names.
+        // A table is removed together with its named tables.
         self.named.retain(|of| of.table != path && format!("{}.{}", of.table, of.name) != path);
         self.assumptions.retain(|of| !is_at(&format!("assumptions.{}", of.name), path));
         self.sweep.retain(|_| path != "sweep");
         let some =
             (named, assumed, swept) != (self.named.len(), self.assumptions.len(), self.sweep.len());
         match keys::without_name(path) {
-            (path, None) => self.layer.take_away(&path) || some,
+            (path, None) => self.layer.remove(&path) || some,
             (path, Some(name)) => {
                 let of_name = self.named.iter_mut().filter(|of| of.name == name);
-                // Each of them, not up to the first.
-                let taken: Vec<bool> = of_name.map(|of| of.layer.take_away(&path)).collect();
+                // Collected, so that all are removed and not only up to the first.
+                let taken: Vec<bool> = of_name.map(|of| of.layer.remove(&path)).collect();
                 taken.contains(&true) || some
             }
         }
     }
 
-    /// What the scene says without a name and every name has for itself would change nothing.
-    fn refuse_unheard(&self, own: &Layer) -> Result<(), SceneError> {
+    /// Refuses keys without a name that every named table of the base overrides: they would have no effect.
+    fn refuse_without_effect(&self, own: &Layer) -> Result<(), SceneError> {
         for (key, given) in KEYS.iter().zip(&own.given) {
             let in_list = || {
                 let listed = own.items.iter().find(|item| item.table == key.table());
@@ -149,8 +148,7 @@ impl Document {
                 let (table, rest) = path.split_once('.').unwrap_or((path, ""));
                 let all: Vec<String> =
                     names.iter().map(|name| format!("[{table}.{name}]")).collect();
-                let reason =
-                    format!("it changes nothing, since {} say it themselves", all.join(", "));
+                let reason = format!("it has no effect, because {} override it", all.join(", "));
                 let advice = format!("write {table}.{}.{rest}", names[0]);
                 return Err(self.error_at(offset, path, Problem::refused(reason, advice)));
             }
@@ -158,7 +156,7 @@ impl Document {
         Ok(())
     }
 
-    /// Moves all places by the length of the text before.
+    /// Shifts all offsets by the length of the text before.
     fn shift(&mut self, by: usize) {
         self.layer.shift(by);
         for named in &mut self.named {
@@ -167,7 +165,7 @@ impl Document {
         }
     }
 
-    /// Files that the scene is on, its base first: names from the scene's folder, and texts.
+    /// Bases of the scene, the nearest first: path relative to the scene's folder, and text.
     pub fn bases(&self) -> Vec<(String, &str)> {
         let name = |source: &Source, fixed| self.shown_path(Path::new(&source.name), fixed);
         let bases = self.sources().skip(1);
@@ -175,7 +173,7 @@ impl Document {
     }
 }
 
-/// A path without the ways into a folder and out again.
+/// Normalises a path: removes `folder/..`.
 fn straight(path: &Path) -> PathBuf {
     let mut straight = PathBuf::new();
     for part in path.components() {
@@ -190,13 +188,13 @@ fn straight(path: &Path) -> PathBuf {
     straight
 }
 
-/// Whether a key or table is this one or in it.
+/// Returns whether the key or table `known` is `path` or inside it.
 fn is_at(known: &str, path: &str) -> bool {
     known.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 impl Layer {
-    fn take_away(&mut self, path: &str) -> bool {
+    fn remove(&mut self, path: &str) -> bool {
         let mut some = false;
         for (key, given) in KEYS.iter().zip(&mut self.given) {
             some |= is_at(key.path, path) && given.take().is_some();

@@ -1,4 +1,4 @@
-//! A scene as a person wrote it: every given key, checked against the key table, with its place.
+//! A scene as written: every given key, checked against the key table, with its position.
 
 use crate::scene::build::about::About;
 use crate::scene::error::{Place, Problem, SceneError};
@@ -16,22 +16,22 @@ use crate::scene::text::value;
 use crate::scene::text::value::{Checked, ValueError};
 use std::sync::Arc;
 
-/// A named hole in the source that the scene fills.
+/// A named assumption for data that the source does not state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assumption {
     pub name: String,
     pub text: String,
 }
 
-/// The given keys of a scene. Cheap to clone and change, for sweeps.
+/// Given keys of a scene. Cheap to clone and change, for sweeps.
 #[derive(Clone, Debug)]
 pub struct Document {
     pub(crate) source: Arc<Source>,
-    /// What tables without a name hold; of a [`Document::scoped`] one with what its name adds.
+    /// Keys of tables without a name; in a [`Document::scoped`] document merged with those of its name.
     pub(crate) layer: Layer,
     /// Tables with a name, such as `[bearing.left]`, in the order of the file.
     pub(crate) named: Vec<Named>,
-    /// The name whose tables are read or laid over the others.
+    /// Name whose tables are being read or have been merged.
     pub(crate) scope: Option<String>,
     pub(crate) assumptions: Vec<Assumption>,
     pub(crate) sweep: Vec<SweepAxis>,
@@ -42,11 +42,11 @@ pub struct Document {
 pub(crate) struct Layer {
     /// One slot for each row of [`KEYS`].
     pub given: Vec<Option<Given>>,
-    /// Tables that occur in the file and where.
+    /// Tables that occur in the file, with offsets.
     pub tables: Vec<(&'static str, usize)>,
     /// Entries of lists of tables, in the order of the file.
     pub items: Vec<Item>,
-    /// Lists of tables that are given without an entry: they take away those below them.
+    /// Empty lists of tables; they remove inherited ones.
     pub emptied: Vec<&'static str>,
 }
 
@@ -61,7 +61,6 @@ impl Default for Layer {
     }
 }
 
-/// One table with a name.
 #[derive(Clone, Debug)]
 pub(crate) struct Named {
     /// Path without the name, `bearing`.
@@ -76,12 +75,12 @@ pub(crate) struct Given {
     pub value: Checked,
     /// `None` for a value that was set after reading.
     pub offset: Option<usize>,
-    /// Whether it stands in a table with a name.
+    /// True if it is in a named table.
     pub named: bool,
 }
 
 impl Layer {
-    /// Takes a value; those that exclude it are taken away and named.
+    /// Sets a value and removes keys that exclude it; returns their paths.
     pub fn put(&mut self, row: usize, key: &'static Key, given: Given) -> Vec<&'static str> {
         let mut gone = Vec::new();
         for rival in key.rivals() {
@@ -97,25 +96,25 @@ impl Layer {
 }
 
 impl Document {
-    /// Reads a scene file; its name tells the format.
+    /// Reads a scene file; the format follows from its name.
     pub fn read_file(path: &std::path::Path) -> Result<Document, SceneError> {
         let (source, format) = source::read(path)?;
         Document::of_source(source, format, 0)
     }
 
-    /// Reads a scene from text; `name` stands for the file in messages.
+    /// Reads a scene from text; messages use `name` as the file name.
     pub fn read_str(text: &str, format: Format, name: &str) -> Result<Document, SceneError> {
         let (name, text) = (name.to_string(), text.to_string());
         let source = Source { name, text, base: None, is_fixed: false };
         Document::of_source(source, format, 0)
     }
 
-    /// Reads a scene from bytes that need not be text.
+    /// Reads a scene from bytes; invalid UTF-8 is an error.
     pub fn read_bytes(bytes: Vec<u8>, format: Format, name: &str) -> Result<Document, SceneError> {
         Document::of_source(source::decode(name.to_string(), bytes)?, format, 0)
     }
 
-    /// `above` scenes have this one for their base.
+    /// `above` is the number of scenes that inherit this one.
     pub(crate) fn of_source(
         source: Source,
         format: Format,
@@ -136,14 +135,13 @@ impl Document {
         document.on_base(above)
     }
 
-    /// Takes the entries of the table `path`.
     pub(crate) fn fill(&mut self, path: &str, entries: Vec<Entry>) -> Result<(), SceneError> {
         for entry in entries {
             let full =
                 if path.is_empty() { entry.name.clone() } else { format!("{path}.{}", entry.name) };
             // A name with a dot inside is one quoted key, not a path.
             let known = if entry.name.contains('.') { None } else { keys::find(&full) };
-            // `outer_race.x` is a key and a table as well: what stands there tells which is meant.
+            // `outer_race.x` is both a key and a table; the value decides which is meant.
             let known = known.filter(|_| {
                 !matches!(entry.node.value, Value::Table(_)) || keys::find_table(&full).is_none()
             });
@@ -166,7 +164,7 @@ impl Document {
             let Value::Table(inner) = entry.node.value else {
                 return Err(self.not_a_table(table, &full, &entry.node));
             };
-            // `[housing.left]` alone makes no [housing] for the others.
+            // `[housing.left]` alone does not give other bearings a housing.
             let of_names = |entry: &Entry| self.as_name(&full, entry).is_some();
             if inner.is_empty() || !inner.iter().all(of_names) {
                 self.layer.tables.push((table.path, entry.offset));
@@ -225,7 +223,7 @@ impl Document {
                 let problem = Problem::WrongKind {
                     expected: "a text in quotes".to_string(),
                     found: node.value.description().to_string(),
-                    advice: "say in words what is assumed".to_string(),
+                    advice: "describe the assumption in quotes".to_string(),
                 };
                 let key = format!("assumptions.{name}");
                 return Err(self.source.error(node.offset, &key, problem));
@@ -235,7 +233,7 @@ impl Document {
         Ok(())
     }
 
-    /// Keys of `[sweep]` are dotted paths, quoted or not: `a.b = ...` is a table in a table to TOML.
+    /// Reads `[sweep]`. Its keys are dotted paths, quoted or not: in TOML, `a.b = ...` is a nested table.
     fn fill_sweep(&mut self, prefix: &str, entries: Vec<Entry>) -> Result<(), SceneError> {
         for Entry { name, offset, node } in entries {
             let path = if prefix.is_empty() { name } else { format!("{prefix}.{name}") };
@@ -255,7 +253,7 @@ impl Document {
         Ok(())
     }
 
-    /// Keys that exclude each other must not both be given; the later one is reported.
+    /// Refuses keys that exclude each other; the later one is reported.
     pub(crate) fn refuse_rivals(&self) -> Result<(), SceneError> {
         let mut first: Option<(usize, &Key, &Key)> = None;
         for (row, key) in KEYS.iter().enumerate() {
@@ -286,8 +284,8 @@ impl Document {
 
     /// Replaces or adds one key, as `--vary` and `[sweep]` do: `set("bearing.clearance.radial", "5 um")`.
     ///
-    /// Keys that exclude it (the diametral clearance, the displacement of a coordinate that gets a
-    /// load) are taken away; gives those that the scene had.
+    /// Removes keys that exclude it (the diametral clearance, the displacement of a coordinate with a
+    /// load) and returns those that the scene had.
     ///
     /// # Errors
     /// An unknown key, or a value its key does not accept.
@@ -304,8 +302,8 @@ impl Document {
         })
     }
 
-    /// Names whose own tables say another value for a key without a name, which therefore does not reach them: these, and
-    /// whether it reaches nothing at all. Nothing of a key with a name.
+    /// Names whose own tables override a key without a name, and whether all do, so that the key has no effect. Empty and
+    /// false for a key with a name.
     pub fn out_of_reach(&self, path: &str) -> (Vec<String>, bool) {
         let Some(Leads { row, key, name: None, .. }) = keys::find_named(path) else {
             return (Vec::new(), false);
@@ -326,7 +324,7 @@ impl Document {
             named.table == table && (says || lists)
         };
         let own: Vec<String> = self.named.iter().filter(own).map(|n| n.name.clone()).collect();
-        // Bodies, springs and sensors go by their own names, all else by those of bearings.
+        // Bodies, springs and sensors have their own names; all others use those of bearings.
         let by = if keys::OWN_NAMES.contains(&table) { table } else { "bearing" };
         let mut names: Vec<&str> = self.names(by).chain(self.names(table)).collect();
         names.sort_unstable();
@@ -336,19 +334,18 @@ impl Document {
         (own, nothing)
     }
 
-    /// Reads what to vary: a list `"5 um, 0 um"` or a range `"0 deg .. 45 deg / 91"` for a key.
+    /// Reads the values of a varied key: a list `"5 um, 0 um"` or a range `"0 deg .. 45 deg / 91"`.
     pub fn axis(&self, path: &str, values: &str) -> Result<SweepAxis, SceneError> {
         let leads = self.row(path)?;
         sweep::axis_of_text(path, &leads, values)
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))
     }
 
-    /// Where a path leads in this scene.
     fn row<'p>(&self, path: &'p str) -> Result<Leads<'p>, SceneError> {
         let error = |problem| SceneError::new(Place::file(&self.source.name), path, problem);
         let leads = keys::find_named(path).ok_or_else(|| error(sweep::unknown_key(path)))?;
         if [BASE, WITHOUT].contains(&leads.key.path) {
-            let advice = "write it into the scene, or name the other scene";
+            let advice = "change it in the scene file";
             return Err(error(Problem::refused("a base is read before keys are set", advice)));
         }
         let wrong_name = leads.name.and_then(|name| self.refused_name(leads.key, name));
@@ -358,12 +355,10 @@ impl Document {
         }
     }
 
-    /// File name as given.
     pub fn name(&self) -> &str {
         &self.source.name
     }
 
-    /// The text of the scene's own file.
     pub fn text(&self) -> &str {
         &self.source.text
     }
@@ -377,7 +372,6 @@ impl Document {
         &self.sweep
     }
 
-    /// Whether the scene says anything of a key.
     pub fn is_given(&self, path: &str) -> bool {
         self.value(path).is_some()
     }
@@ -401,7 +395,7 @@ impl Document {
         all.into_iter().find(|known| below(known))
     }
 
-    /// Keys that are given, one of the table's rows each; those of lists of tables are not in it.
+    /// Given keys, without those of lists of tables.
     pub(crate) fn given_keys(&self) -> impl Iterator<Item = &'static Key> {
         KEYS.iter()
             .enumerate()
@@ -409,12 +403,12 @@ impl Document {
             .map(|(_, key)| key)
     }
 
-    /// An error about a key or table: at its value, else at the innermost table that would hold it.
+    /// An error about a key or table: at its value, else at the innermost table that would contain it.
     pub(crate) fn error(&self, path: &str, problem: Problem) -> SceneError {
         SceneError::new(self.place_of_key(path), &self.shown(path, self.is_named(path)), problem)
     }
 
-    /// The same of a key that has no place here.
+    /// An error about a key that is not allowed here.
     pub(crate) fn refused(
         &self,
         path: &str,
@@ -424,7 +418,7 @@ impl Document {
         self.error(path, Problem::refused(reason, advice))
     }
 
-    /// The same under the name that is being read, whether the key stands in its table or is missing there.
+    /// As [`Document::error`], but always with the name that is being read, also if the key is missing there.
     pub(crate) fn error_here(&self, path: &str, problem: Problem) -> SceneError {
         SceneError::new(self.place_of_key(path), &self.shown(path, true), problem)
     }
@@ -433,7 +427,7 @@ impl Document {
         self.source.error(offset, path, problem)
     }
 
-    /// Where the part of the scene stands that a later error is about.
+    /// Position of the part of the scene that a later error is about.
     pub fn place_of(&self, about: &About) -> Place {
         match about {
             About::Key(path) => self.place_of_key(path),
@@ -461,7 +455,7 @@ impl Document {
         place.unwrap_or_else(|| Place::file(&self.source.name))
     }
 
-    /// Where the bearing, body or spring stands that is being read, for a key that goes by its name.
+    /// Table of the bearing, body or spring that is being read, for a key of a named table.
     fn own_table(&self, path: &str) -> Option<&(&'static str, usize)> {
         let named = path.split('.').next().is_some_and(|top| keys::NAMED.contains(&top));
         let own = |(table, _): &&(&str, usize)| ["bearing", "body", "spring"].contains(table);

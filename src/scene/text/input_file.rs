@@ -1,35 +1,32 @@
-//! The one way in which a file that a user names is opened.
+//! Opening of user files.
 //!
-//! Only regular files are read, and up to a stated size: opening a pipe waits for ever, a device may
-//! have no end.
+//! Only regular files up to a size limit are read: a pipe may block and a device may be endless.
 
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 use thiserror::Error;
 
-/// Bytes of the largest mesh or table that is read: ten-node elements by the ten million.
+/// Size limit of meshes and tables, bytes; enough for ten million ten-node elements.
 pub const LARGEST_DATA: u64 = 4 << 30;
 
-/// Bytes of the largest JSON file of results, tolerances, hashes or states. A summary has some
-/// hundred kilobytes.
+/// Size limit of JSON files of results, tolerances, hashes or states, bytes. A summary has some hundred
+/// kilobytes.
 pub const LARGEST_JSON: u64 = 16 << 20;
 
 #[derive(Debug, Error)]
 pub enum InputError {
     #[error(transparent)]
     Io(#[from] io::Error),
-    #[error("it is a folder, and a file is needed")]
+    #[error("it is a folder; a file is needed")]
     Folder,
-    #[error(
-        "it is a pipe, a device or a socket; only regular files are read: copy its content into one"
-    )]
+    #[error("it is a pipe, a device or a socket; copy its content into a regular file")]
     NotRegular,
-    #[error("it has {}, and up to {limit} bytes are read; is this the right file?", size(*bytes, *limit))]
+    #[error("it has {}; at most {limit} bytes are allowed. Is this the right file?", size(*bytes, *limit))]
     TooLarge { bytes: u64, limit: u64 },
 }
 
-/// A file that grew while it was read has been read to its limit only.
+/// Size for the message. A file that grew while it was read has been read up to the limit only.
 fn size(bytes: u64, limit: u64) -> String {
     if bytes > limit + 1 { format!("{bytes} bytes") } else { format!("more than {limit} bytes") }
 }
@@ -40,8 +37,7 @@ impl InputError {
     }
 }
 
-/// Opens a regular file of at most `limit` bytes. Links are followed: what counts is what they
-/// lead to.
+/// Opens a regular file of at most `limit` bytes. Links are followed.
 ///
 /// # Errors
 /// [`InputError`]; pipes, devices, sockets and folders are refused unopened.
@@ -54,12 +50,12 @@ pub fn open(path: &Path, limit: u64) -> Result<File, InputError> {
     };
     check(std::fs::metadata(path)?)?;
     let file = File::open(path)?;
-    // It may have been exchanged in between.
+    // The file may have been replaced in between.
     check(file.metadata()?)?;
     Ok(file)
 }
 
-/// The content of a regular file of at most `limit` bytes.
+/// Reads a regular file of at most `limit` bytes.
 ///
 /// # Errors
 /// As [`open`].

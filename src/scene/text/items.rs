@@ -1,4 +1,4 @@
-//! Lists of tables, such as `[[solid.load]]` or the discs of a shaft: one table each, counted from 1 where people name them.
+//! Lists of tables, such as `[[solid.load]]` or the discs of a shaft. Users number the tables from 1.
 
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::tables::keys;
@@ -13,12 +13,11 @@ pub(crate) struct Item {
     pub table: &'static str,
     offset: usize,
     given: Vec<(usize, Given)>,
-    /// Whether it stands in a table with a name.
+    /// True if it is inside a named table.
     named: bool,
 }
 
 impl Item {
-    /// Where its table begins.
     pub fn begins(&self) -> usize {
         self.offset
     }
@@ -29,7 +28,7 @@ impl Item {
     }
 }
 
-/// One table of a list of tables, with the document it stands in.
+/// One table of a list of tables, with its document.
 #[derive(Clone, Copy)]
 pub(crate) struct ItemRef<'d> {
     document: &'d Document,
@@ -45,14 +44,13 @@ impl<'d> ItemRef<'d> {
         self.item.given.iter().find(|(given, _)| *given == row).map(|(_, given)| &given.value)
     }
 
-    /// An error about a key of this table, or about the table.
     pub fn error(&self, name: &str, problem: Problem) -> SceneError {
         let table = self.document.shown(self.item.table, self.item.named);
         let path = format!("{table}.{}.{name}", self.number);
         self.document.error_at(self.offset(name), &path, problem)
     }
 
-    /// Where a key of this table has its value; of one that is not given, where the table begins.
+    /// Offset of a key's value in this table; of the table if the key is not given.
     pub(crate) fn offset(&self, name: &str) -> usize {
         let row = keys::find(&format!("{}.{name}", self.item.table)).map(|(row, _)| row);
         let own = self.item.given.iter().find(|(given, _)| Some(*given) == row);
@@ -61,7 +59,6 @@ impl<'d> ItemRef<'d> {
 }
 
 impl Document {
-    /// Takes the tables of a list of tables.
     pub(crate) fn fill_list(
         &mut self,
         table: &'static keys::Table,
@@ -106,7 +103,7 @@ impl Document {
         of.enumerate().map(|(index, item)| ItemRef { document: self, item, number: index + 1 })
     }
 
-    /// What is wrong with the number of a table in a list, or that there is none.
+    /// Problem with the index of a table in a list: missing or out of range; `None` if it is valid.
     pub(crate) fn refused_item(&self, path: &str, leads: &Leads) -> Option<Problem> {
         let key = leads.key;
         if !key.in_list() {
@@ -126,8 +123,8 @@ impl Document {
         (!within).then_some(Problem::NoSuchItem { count })
     }
 
-    /// Replaces or adds a key of one table of a list that is there; a name that has the list of all takes it for its own.
-    /// Gives the keys that had to go.
+    /// Replaces or adds a key of one table of an existing list; a name that inherits the list gets its own copy.
+    /// Returns the keys that were removed.
     pub(crate) fn put_item(&mut self, leads: &Leads, given: Given) -> Vec<&'static str> {
         let table = leads.key.table();
         let common: Vec<Item> = of_table(&self.layer, table).cloned().collect();
@@ -159,7 +156,7 @@ fn of_table<'l>(layer: &'l Layer, table: &'l str) -> impl Iterator<Item = &'l It
     layer.items.iter().filter(move |item| item.table == table)
 }
 
-/// A key of a list of tables says nothing without the number of one of them.
+/// Problem of a path to a key of a list of tables without an index.
 pub(crate) fn which_item(path: &str) -> Problem {
     let (list, name) = path.rsplit_once('.').unwrap_or(("", path));
     Problem::WhichItem { example: format!("{list}.1.{name}") }

@@ -1,4 +1,4 @@
-//! Tables with names: `[bearing.left]` is what `[bearing]` says with its own keys laid over it.
+//! Named tables: `[bearing.left]` inherits the keys of `[bearing]` and overrides some.
 
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::tables::keys;
@@ -7,15 +7,15 @@ use crate::scene::text::document::{Document, Layer, Named};
 use crate::scene::text::items::Item;
 use crate::scene::text::tree::{Entry, Value};
 
-/// A name this much like a key or table beside it is taken for a mistyped one.
+/// Similarity (0 to 1) from which a name is taken for a mistyped key or table of the same level.
 const ALIKE: f64 = 0.75;
-/// Tables with names in one scene.
+/// Maximum number of named tables in a scene.
 const MOST: usize = 500;
-/// Names stand before the names of columns.
+/// Maximum length of a name, which is a prefix of column names.
 const LONGEST_NAME: usize = 32;
 
 impl Document {
-    /// The table of which this entry is a named one, if it can be.
+    /// The table of which this entry is a named table; `None` if it cannot be one.
     pub(crate) fn as_name(&self, path: &str, entry: &Entry) -> Option<&'static str> {
         let table = keys::NAMED.iter().find(|table| **table == path)?;
         let is_table = matches!(entry.node.value, Value::Table(_)) && self.scope.is_none();
@@ -23,7 +23,6 @@ impl Document {
         (is_table && mistyped.is_none()).then_some(*table)
     }
 
-    /// Takes a named table.
     pub(crate) fn fill_named(
         &mut self,
         table: &'static str,
@@ -34,7 +33,7 @@ impl Document {
             return Err(self.error_at(offset, &format!("{table}.{name}"), problem));
         }
         if self.named.len() == MOST {
-            let reason = format!("more than {MOST} tables with names");
+            let reason = format!("more than {MOST} named tables");
             let advice = "all bodies are solved in one dense matrix; split the scene";
             let problem = Problem::refused(reason, advice);
             return Err(self.error_at(offset, &format!("{table}.{name}"), problem));
@@ -51,7 +50,7 @@ impl Document {
         Ok(())
     }
 
-    /// A path as it stands in the file: with the name where it is one of a named table.
+    /// A path as in the file: with the name if it is in a named table.
     pub(crate) fn shown(&self, path: &str, named: bool) -> String {
         match &self.scope {
             Some(name) if named => match path.split_once('.') {
@@ -62,13 +61,13 @@ impl Document {
         }
     }
 
-    /// Whether a path is of the tables with a name that is being read.
+    /// Returns whether a path is in the named table that is being read.
     pub(crate) fn is_in_named_table(&self, path: &str) -> bool {
         let top = path.split('.').next();
         self.layer.tables.first().is_some_and(|(table, _)| Some(*table) == top)
     }
 
-    /// Whether a key stands in a table with a name; one that is not given, whether its table has something of one.
+    /// Returns whether a key is given in a named table; if it is not given, whether another key of its table is.
     pub(crate) fn is_named(&self, path: &str) -> bool {
         let is_own = |row: usize| self.layer.given[row].as_ref().is_some_and(|given| given.named);
         if let Some((row, _)) = keys::find(path).filter(|(row, _)| self.layer.given[*row].is_some())
@@ -86,8 +85,7 @@ impl Document {
         self.named.iter().filter(move |named| named.table == table).map(|n| n.name.as_str())
     }
 
-    /// The document as the things of one name see it: what has no name, with the tables of this name laid
-    /// over it.
+    /// The document for one name: tables without a name, overridden by those of this name.
     pub fn scoped(&self, name: &str) -> Document {
         let mut scoped = self.clone();
         scoped.scope = Some(name.to_string());
@@ -98,7 +96,7 @@ impl Document {
         scoped
     }
 
-    /// Refuses tables with names where nothing goes by them.
+    /// Refuses named tables in a scene whose bearing has no name; sensors are allowed.
     pub(crate) fn refuse_names(&self) -> Result<(), SceneError> {
         let nobody = |named: &&Named| named.table != "sensor";
         let Some(named) = self.named.iter().find(nobody) else { return Ok(()) };
@@ -107,14 +105,14 @@ impl Document {
         Err(self.error_of_name(named.table, &named.name, Problem::refused(reason, advice)))
     }
 
-    /// The same without names: what only tables without one say.
+    /// The document without named tables.
     pub(crate) fn common(&self) -> Document {
         let mut common = self.clone();
         common.named.clear();
         common
     }
 
-    /// Takes the value of another document's key for a key of this one.
+    /// Copies the value of another document's key to a key of this one.
     pub(crate) fn take_over(&mut self, from: &Document, source: &str, path: &str) {
         let given = keys::find(source).and_then(|(row, _)| from.layer.given[row].clone());
         if let (Some((row, key)), Some(given)) = (keys::find(path), given) {
@@ -122,15 +120,15 @@ impl Document {
         }
     }
 
-    /// What is wrong with a name before this key: tables that say more of a bearing go by the names of bearings,
-    /// whether they stand in the file or not.
+    /// Problem with the name in a path to this key; `None` if it is known. Tables that describe parts of a bearing use the
+    /// names of bearings, whether or not the file has such a table.
     pub(crate) fn refused_name(&self, key: &Key, name: &str) -> Option<Problem> {
         let kind = kind_of(key);
         let known = || self.names(kind);
         known().all(|known| known != name).then(|| no_such(name, kind, known()))
     }
 
-    /// What the table of this name holds, an empty one where it does not stand in the file.
+    /// Keys of the table with this name; an empty layer is added if the file has none.
     pub(crate) fn layer_of(&mut self, key: &Key, name: &str) -> &mut Layer {
         let table = table_of(key);
         let own = |named: &Named| named.table == table && named.name == name;
@@ -143,7 +141,6 @@ impl Document {
         &mut self.named[index].layer
     }
 
-    /// An error about a table with a name.
     pub(crate) fn error_of_name(&self, table: &str, name: &str, problem: Problem) -> SceneError {
         let own = self.named.iter().find(|named| named.table == table && named.name == name);
         let path = format!("{table}.{name}");
@@ -154,24 +151,24 @@ impl Document {
     }
 }
 
-/// The table of names that a key is below.
+/// The table of [`keys::NAMED`] that contains a key.
 fn table_of(key: &Key) -> &'static str {
     let table = key.path.split('.').next();
     keys::NAMED.into_iter().find(|named| Some(*named) == table).unwrap_or("bearing")
 }
 
-/// What has the names of that table: bodies, springs and sensors their own, all others those of bearings.
+/// Kind of the names of that table: bodies, springs and sensors have their own, all others those of bearings.
 fn kind_of(key: &Key) -> &'static str {
     let table = table_of(key);
     if keys::OWN_NAMES.contains(&table) { table } else { "bearing" }
 }
 
-/// A name that nothing goes by, and what it may have been meant for.
+/// Problem of an unknown name, with the most similar known one.
 pub(crate) fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'n str>) -> Problem {
     let known: Vec<&str> = known.collect();
     let nearest = keys::nearest(name, known.iter().copied(), 0.5);
     let reason = match known.is_empty() {
-        true => format!("there is no {kind} {name:?}, nor any other with a name"),
+        true => format!("there is no {kind} {name:?}, nor any other named {kind}"),
         false => format!("there is no {kind} {name:?}; there are: {}", known.join(", ")),
     };
     let advice = match nearest {
@@ -182,7 +179,7 @@ pub(crate) fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'
 }
 
 impl Layer {
-    /// Its keys hold where both have one; lists are taken whole, those without an entry as well.
+    /// Merges `other` into this layer; its keys win, and its lists, also empty ones, replace whole lists.
     pub(crate) fn lay_over(&mut self, other: &Layer) {
         for (row, given) in other.given.iter().enumerate() {
             if let Some(given) = given {
@@ -196,23 +193,23 @@ impl Layer {
         };
         self.items.retain(|item| !replaced(item));
         self.items.extend(other.items.iter().cloned());
-        // For what this one is laid over in turn.
+        // Needed when this layer is merged into another.
         self.emptied.retain(|table| other.items.iter().all(|item| item.table != *table));
         self.emptied.extend(&other.emptied);
     }
 }
 
-/// What is wrong with a name that stands in names of columns and files.
+/// Problem with a user's name, which is part of column and file names; `None` if it is valid.
 pub(crate) fn unfit(name: &str) -> Option<Problem> {
     const RESERVED: [&str; 5] = ["inner_race", "outer_race", "ground", "inner", "outer"];
     let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
     let reason = if !begins || !name.chars().all(letters) {
-        "a name has letters, digits and underscores and begins with a letter"
+        "a name consists of letters, digits and underscores and begins with a letter"
     } else if name.len() > LONGEST_NAME {
-        "names stand before the names of columns and have up to 32 letters"
+        "a name has up to 32 letters, because it is a prefix of column names"
     } else if RESERVED.contains(&name) {
-        "this word has a meaning of its own"
+        "this name is reserved"
     } else {
         return None;
     };

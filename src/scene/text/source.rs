@@ -1,4 +1,4 @@
-//! The text of a scene: reading the file, refusing what is not a scene early, and positions.
+//! The text of a scene: reading, early checks and positions.
 
 use crate::scene::error::{Place, Problem, SceneError};
 use crate::scene::text::input_file;
@@ -6,32 +6,30 @@ use crate::scene::text::input_file::InputError;
 use std::path::Path;
 use std::sync::Arc;
 
-/// How a scene is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Toml,
     Json,
 }
 
-/// Larger files are refused unread.
+/// Size limit of a scene file, bytes; larger files are refused unread.
 pub const LARGEST_FILE: u64 = 16 << 20;
 
-/// Tables and lists may nest this deep. Checked before parsing, so that no parser can run out of stack.
+/// Nesting limit of tables and lists. Checked before parsing, so that no parser can overflow the stack.
 pub const DEEPEST_NESTING: usize = 64;
 
-/// Name and text of a scene.
 #[derive(Clone, Debug)]
 pub struct Source {
     pub name: String,
     pub text: String,
-    /// What the scene is on; its offsets count on from the end of this text.
+    /// Base of the scene; its offsets continue at the end of this text.
     pub base: Option<Arc<Source>>,
-    /// Whether a scene names it, its base, by a path from the root: then it lies where it lies.
+    /// True if a scene names this file, its base, by an absolute path.
     pub is_fixed: bool,
 }
 
 impl Source {
-    /// Where the offsets of a base begin.
+    /// Offset at which a base begins.
     pub fn length(&self) -> usize {
         self.text.len() + 1
     }
@@ -57,7 +55,7 @@ impl Source {
     }
 }
 
-/// Reads the file's bytes; the kind of file follows from its name.
+/// Reads a scene file; the format follows from its name.
 pub fn read(path: &Path) -> Result<(Source, Format), SceneError> {
     let name = path.display().to_string();
     let fail = |problem| SceneError::new(Place::file(&name), "", problem);
@@ -82,7 +80,6 @@ fn format_of(path: &Path) -> Option<Format> {
     }
 }
 
-/// UTF-8 text of a file, without byte-order mark.
 pub fn decode(name: String, bytes: Vec<u8>) -> Result<Source, SceneError> {
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Source { name, text, base: None, is_fixed: false }),
@@ -97,7 +94,7 @@ pub fn decode(name: String, bytes: Vec<u8>) -> Result<Source, SceneError> {
     }
 }
 
-/// Refuses texts that no parser should see: too large, empty, binary or nested too deep.
+/// Refuses texts that are too large, empty, binary or nested too deeply, and removes a byte-order mark.
 pub fn check(mut source: Source, format: Format) -> Result<Source, SceneError> {
     let bytes = source.text.len() as u64;
     if bytes > LARGEST_FILE {
@@ -119,10 +116,10 @@ pub fn check(mut source: Source, format: Format) -> Result<Source, SceneError> {
     Ok(source)
 }
 
-/// Offset at which brackets, or the parts of a dotted TOML key, first go deeper than allowed.
+/// Offset at which brackets, or the parts of a dotted TOML key, first exceed [`DEEPEST_NESTING`].
 ///
-/// A linear scan that knows strings and comments. In a malformed text it may see strings where the
-/// parser does not; the parsers' own limits, far below what the stack holds, then apply.
+/// A linear scan that skips strings and comments. In a malformed text it may find strings where the
+/// parser does not; the parsers' own limits, far below the stack size, then apply.
 fn too_deep(text: &str, format: Format) -> Option<usize> {
     let bytes = text.as_bytes();
     let toml = format == Format::Toml;

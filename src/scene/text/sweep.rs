@@ -1,4 +1,4 @@
-//! Values a sweep runs through: lists `5 um, 0 um, -5 um` and ranges `0 deg .. 45 deg / 91`.
+//! Values of a sweep: lists `5 um, 0 um, -5 um` and ranges `0 deg .. 45 deg / 91`.
 
 use crate::scene::error::{Problem, shortened};
 use crate::scene::tables::keys;
@@ -8,10 +8,9 @@ use crate::scene::text::tree::{Node, Value};
 use crate::scene::text::units::{parse_number, parse_quantity, plain};
 use crate::scene::text::value::{ValueError, check_bare};
 
-/// One varied key and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepAxis {
-    /// Path as a person writes it, with the name of a named table: `bearing.left.clearance.radial`.
+    /// Path with the name of a named table: `bearing.left.clearance.radial`.
     pub key: String,
     pub values: SweepValues,
 }
@@ -28,7 +27,7 @@ pub enum SweepValues {
     },
 }
 
-/// More values than this in one axis are taken for a mistake.
+/// Limit of values in one axis; more are taken for a mistake.
 const MOST_VALUES: usize = 10_000_000;
 
 impl SweepAxis {
@@ -43,7 +42,7 @@ impl SweepAxis {
         self.len() == 0
     }
 
-    /// The value of number `index` as `Document::set` takes it; `None` past the end.
+    /// Value at `index` as `Document::set` takes it; `None` past the end.
     pub fn value(&self, index: usize) -> Option<String> {
         match &self.values {
             SweepValues::List(list) => list.get(index).cloned(),
@@ -55,17 +54,16 @@ impl SweepAxis {
     }
 }
 
-/// Both ends are met exactly.
+/// Value at `index` of a range; exact at both ends.
 fn range_value(low: f64, high: f64, index: usize, count: usize) -> f64 {
     if index + 1 == count {
         return high;
     }
     let value = low + (high - low) * index as f64 / (count - 1) as f64;
-    // To 15 digits, as a person would have written it: 0.05, not 0.049999999999999996.
+    // Rounded to 15 digits: 0.05, not 0.049999999999999996.
     format!("{value:.14e}").parse().unwrap_or(value)
 }
 
-/// Axis from an entry of the `[sweep]` table.
 pub(crate) fn axis_of_node(
     path: &str,
     key_offset: usize,
@@ -108,7 +106,7 @@ pub(crate) fn axis_of_node(
     Ok(SweepAxis { key: path.to_string(), values: SweepValues::List(values) })
 }
 
-/// Axis from one text: a list with commas, or a range `low .. high / count`.
+/// Axis from one text: a comma-separated list, or a range `low .. high / count`.
 pub(crate) fn axis_of_text(path: &str, leads: &Leads, text: &str) -> Result<SweepAxis, Problem> {
     refuse_unsweepable(path, leads)?;
     let key = leads.key;
@@ -129,7 +127,7 @@ pub(crate) fn axis_of_text(path: &str, leads: &Leads, text: &str) -> Result<Swee
 }
 
 fn range(key: &'static Key, text: &str, low: &str, rest: &str) -> Result<SweepValues, Problem> {
-    // The last "/" parts the count: units such as rad/s have one too.
+    // The last "/" precedes the count: units such as rad/s have one too.
     let Some((high, count)) = rest.rsplit_once('/') else {
         return Err(bad(&text, "no number of values after \"/\""));
     };
@@ -191,21 +189,21 @@ fn bad(written: &dyn std::fmt::Display, reason: &str) -> Problem {
     Problem::BadSweep { written, reason: reason.to_string() }
 }
 
-/// An unknown dotted key on the command line or in `[sweep]`.
+/// Problem of an unknown dotted key on the command line or in `[sweep]`.
 pub(crate) fn unknown_key(path: &str) -> Problem {
     if keys::find_table(path).is_some() {
         let inside =
             keys::children(path).iter().map(|name| format!("{path}.{name}")).collect::<Vec<_>>();
         return Problem::UnknownKey { nearest: None, allowed: inside.join(", ") };
     }
-    // The key is looked for without the name of its table, and told with it.
+    // The key is searched without the table's name, and reported with it.
     let (plain, name) = keys::without_name(path);
     let (table, key) = plain.rsplit_once('.').unwrap_or(("", &plain));
     let nearest =
         keys::nearest_key(table, key).map(|nearest| match (name, nearest.split_once('.')) {
             (Some(name), Some((top, rest))) if plain.split('.').next() == Some(top) => {
                 Some(format!("{top}.{name}.{rest}"))
-                    // What stands in the place of a name need not be one.
+                    // The second part need not be a name.
                     .filter(|named| named != path)
                     .unwrap_or(nearest)
             }

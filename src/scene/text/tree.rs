@@ -1,11 +1,10 @@
-//! TOML and JSON as one small tree of values with byte offsets; everything later is shared.
+//! TOML and JSON as one tree of values with byte offsets.
 
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::text::source::{Format, Source};
 use std::collections::HashSet;
 use toml::de::{DeTable, DeValue};
 
-/// A value and where it begins.
 #[derive(Clone, Debug)]
 pub struct Node {
     pub value: Value,
@@ -21,7 +20,7 @@ pub enum Value {
     /// A number as written, without TOML's underscores.
     Number(String),
     Boolean(bool),
-    /// A date, or JSON's null: no key takes one.
+    /// A date, or JSON's null: no key accepts one.
     Other(&'static str),
 }
 
@@ -33,7 +32,7 @@ pub struct Entry {
 }
 
 impl Value {
-    /// What this is, for messages.
+    /// Kind of the value, for messages.
     pub fn description(&self) -> &'static str {
         match self {
             Value::Table(_) => "a table",
@@ -143,7 +142,7 @@ fn parse_json(source: &Source) -> Result<Vec<Entry>, SceneError> {
             let problem = Problem::Syntax { format: "JSON", message, advice };
             source.error(error.range().start, "", problem)
         })?;
-    // What the first parser still lets pass (leading zeros, odd white space) the second refuses.
+    // The second parser refuses what the first accepts: leading zeros, unusual white space.
     if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(&source.text) {
         let offset = line_offset(&source.text, error.line()) + error.column().saturating_sub(1);
         let message = error.to_string();

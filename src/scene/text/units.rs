@@ -3,7 +3,7 @@
 //! A decimal number in a power-of-ten unit becomes the double nearest to the exact SI value: the
 //! exponent is shifted in the text before it is parsed, so `"20.047 mm"` equals `20.047e-3`.
 
-/// What kind of quantity a key holds.
+/// Dimension of a key's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     Length,
@@ -32,7 +32,7 @@ pub enum Dimension {
     Resistance,
 }
 
-/// How a unit converts to SI.
+/// Conversion of a unit to SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// SI value = number × 10^exponent, exact in decimal.
@@ -297,7 +297,7 @@ impl Dimension {
 /// Why a text is not a quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub enum QuantityProblem {
-    /// A number alone.
+    /// A number without a unit.
     NoUnit {
         number: String,
     },
@@ -319,7 +319,7 @@ pub enum QuantityProblem {
     NotFinite,
 }
 
-/// A quantity as written: its number, the unit it names and its SI value.
+/// A quantity as written: number, unit and SI value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity<'t> {
     pub number: f64,

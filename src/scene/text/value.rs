@@ -1,4 +1,4 @@
-//! One written value against its row of the key table: kind, unit and range.
+//! Checks a written value against its row of the key table: kind, unit and range.
 
 use crate::numeric::profile::Profile;
 use crate::scene::error::{Problem, shortened};
@@ -19,12 +19,12 @@ pub enum Checked {
     Choices(Vec<&'static str>),
     /// A profile that is written as a table; a constant one is a `Number`.
     Profile(Profile),
-    /// Which of the kinds of [`Kind::Either`], and the value.
+    /// Index of the kind in [`Kind::Either`], and the value.
     Either(usize, f64),
     Quantities(Vec<f64>),
 }
 
-/// A problem and where it is: the offset of the element of a list or profile that has it.
+/// A problem and the offset of the element of a list or profile that has it.
 #[derive(Debug)]
 pub struct ValueError {
     pub offset: usize,
@@ -39,7 +39,6 @@ impl From<(usize, Problem)> for ValueError {
     }
 }
 
-/// Checks `node` against `key`.
 pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
     let here = |problem| ValueError::from((node.offset, problem));
     match (key.kind, &node.value) {
@@ -116,7 +115,6 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
     check(key, &Node { value, offset: 0 }).map_err(|error| error.problem)
 }
 
-/// A value of the first kind that takes it.
 fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, Problem> {
     let mut first_problem = None;
     for (index, kind) in kinds.iter().enumerate() {
@@ -129,7 +127,7 @@ fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, P
         };
         match taken {
             Ok(value) => return Ok(Checked::Either(index, value)),
-            // With a unit of another of the kinds, that kind's answer counts.
+            // If the unit belongs to another of the kinds, that kind decides.
             Err(Problem::WrongUnit { .. } | Problem::UnknownUnit { .. }) => {}
             Err(problem) => first_problem = first_problem.or(Some(problem)),
         }
@@ -137,7 +135,6 @@ fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, P
     Err(first_problem.unwrap_or_else(|| wrong_kind(key, value)))
 }
 
-/// A list of increasing quantities.
 fn quantities(
     key: &Key,
     items: &[Node],
@@ -160,14 +157,13 @@ fn quantities(
     Ok(Checked::Quantities(values))
 }
 
-/// A kind in words.
 fn expected(kind: Kind) -> String {
     match kind {
         Kind::Text => "a text in quotes".to_string(),
         Kind::Boolean => "true or false".to_string(),
         Kind::Integer { low, high } => format!("a whole number from {low} to {high}"),
         Kind::Choice(choices) => format!("one of {}", quoted(choices)),
-        Kind::Choices(choices) => format!("a list out of {}", quoted(choices)),
+        Kind::Choices(choices) => format!("a list of words from {}", quoted(choices)),
         Kind::Number(range) => format!("a plain number, {range}"),
         Kind::Quantity(dimension, range) => format!("{} with its unit, {range}", dimension.name()),
         Kind::Vector(dimension, _) => {
@@ -192,7 +188,7 @@ fn expected(kind: Kind) -> String {
 }
 
 fn wrong_kind(key: &Key, found: &Value) -> Problem {
-    // A choice that looks like a number was meant as the text of it.
+    // A choice that looks like a number, written without quotes.
     let meant = match (key.kind, found) {
         (Kind::Choice(choices), Value::Number(text)) => choices.iter().find(|word| **word == text),
         _ => None,
@@ -205,7 +201,6 @@ fn wrong_kind(key: &Key, found: &Value) -> Problem {
     }
 }
 
-/// What was found, for a sentence.
 pub(crate) fn described(found: &Value) -> String {
     match found {
         Value::Text(_) => format!("the text {}", shown(found)),
@@ -214,7 +209,7 @@ pub(crate) fn described(found: &Value) -> String {
     }
 }
 
-/// A value as it stands in the file.
+/// A value as written in the file.
 pub(crate) fn shown(value: &Value) -> String {
     match value {
         Value::Text(text) => format!("\"{}\"", shortened(text)),
@@ -235,7 +230,7 @@ fn integer(key: &Key, text: &str, low: i64, high: i64) -> Result<i64, Problem> {
     let value = match text.parse::<i64>() {
         Ok(value) => value,
         Err(_) => match parse_number(text) {
-            // So large that it is out of range whatever it is.
+            // Out of any range.
             Ok(value) if value.fract() == 0.0 && value.abs() > 1e15 => i64::MAX,
             Err(QuantityProblem::NotFinite) => return Err(Problem::NotFinite { written, allowed }),
             _ => {
@@ -264,7 +259,7 @@ fn choice(text: &str, choices: &'static [&'static str]) -> Result<&'static str, 
     })
 }
 
-/// The choice most like what is written; none where two are equally like it, as those of numbers are.
+/// The choice most similar to `text`; `None` if two are equally similar.
 fn meant(text: &str, choices: &'static [&'static str]) -> Option<String> {
     let first = nearest(text, choices.iter().copied(), 0.5);
     let last = nearest(text, choices.iter().rev().copied(), 0.5);
