@@ -1,12 +1,12 @@
-//! Which part of a scene an error is about that shows only with the mesh, when no position in the
-//! file is known any more: the document says where it stands.
+//! Part of a scene for an error that is found with the mesh, when positions in the file are no longer known: the
+//! document looks them up.
 
 /// Part of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum About {
     /// A key or a table, dotted.
     Key(String),
-    /// A key of one entry of a list of tables, entries counted from 0.
+    /// A key of one entry of a list of tables; entries are counted from 0.
     Item { table: &'static str, index: usize, key: &'static str },
 }
 

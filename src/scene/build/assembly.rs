@@ -1,4 +1,4 @@
-//! A scene of bearings, rigid bodies and springs, resolved, and the lists that the solver takes.
+//! A resolved scene of bearings, rigid bodies and springs, and the lists of the solver.
 
 use crate::assembly::lists::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
 use crate::assembly::loads::{Drive, DrivenBody, RotatingLoad, Rotation};
@@ -22,43 +22,43 @@ use crate::scene::resolve::solid_scene::SolidScene;
 use crate::scene::tables::assembly::OWN_RACES;
 use thiserror::Error;
 
-/// An equilibrium is asked for where a bore has friction.
+/// An equilibrium of a bore with friction.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
-    "housing{of}.friction: refused: what friction holds depends on how the race came to its place, and an equilibrium \
-     knows nothing of that. Hint: `bearing run` takes it along; leave `friction` out for an equilibrium of smooth bores"
+    "housing{of}.friction: refused: an equilibrium with friction depends on how the race came to its position, and \
+      statics omits that. Hint: `bearing run` includes friction; leave `friction` out for an equilibrium of smooth bores"
 )]
 pub struct RoughBore {
-    /// ".left", of a housing with a name.
+    /// ".left" for a named housing.
     of: String,
 }
 
-/// Bearings and what they sit on, SI units.
+/// Bearings and their bodies, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyScene {
-    /// One at least; the first one's scene has what all share: title, run, outputs, gravity.
+    /// At least one; the scene of the first has the common part: title, run, outputs, gravity.
     pub bearings: Vec<PlacedBearing>,
     pub bodies: Vec<SceneBody>,
     pub springs: Vec<Spring>,
     pub sensors: Vec<SceneSensor>,
-    /// Of bodies, springs, sensors and places.
+    /// Defaults of bodies, springs, sensors and positions.
     pub defaults_used: Vec<DefaultUsed>,
 }
 
-/// A bearing and the bodies that carry its races.
+/// A bearing and the bodies under its races.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedBearing {
     /// `None` for the only one.
     pub name: Option<String>,
-    /// Of the inner and of the outer race.
+    /// Carriers of the inner and of the outer race.
     pub carriers: [Carrier; 2],
     pub reversed: bool,
     pub scene: Scene,
-    /// What the outer race sits in, if it is flexible.
+    /// Flexible housing of the outer race.
     pub housing: Option<PlacedHousing>,
 }
 
-/// A flexible housing about a bearing's place.
+/// A flexible housing at a bearing's position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedHousing {
     pub settings: HousingSettings,
@@ -66,13 +66,13 @@ pub struct PlacedHousing {
 }
 
 impl PlacedBearing {
-    /// Whether it has no name and stands where a bearing alone does.
+    /// Returns whether it has no name and the position of a bearing alone.
     fn is_alone(&self) -> bool {
         let at_origin = self.carriers == [Carrier::Own { at: 0.0 }; 2];
         self.name.is_none() && !self.reversed && at_origin
     }
 
-    /// The bearing with its flexible housing as a scene of the two where they stand.
+    /// The bearing with its flexible housing as a scene of the two at their position.
     pub fn housed(&self) -> Option<HousedScene> {
         let PlacedHousing { settings, solid } = self.housing.clone()?;
         let at = self.carriers[1].at();
@@ -86,10 +86,10 @@ impl PlacedBearing {
     }
 }
 
-/// What carries a race, and where along X from there the race sits, m.
+/// Body of a race, and the race's position on it along X, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Carrier {
-    /// It is a body of its own.
+    /// A body of its own.
     Own { at: f64 },
     /// Index in [`AssemblyScene::bodies`].
     Body { index: usize, at: f64 },
@@ -103,7 +103,7 @@ impl Carrier {
     }
 }
 
-/// A rigid body besides races and cages.
+/// A rigid body in addition to races and cages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneBody {
     pub name: String,
@@ -111,32 +111,32 @@ pub struct SceneBody {
     pub rotating_load: Option<RotatingLoad>,
     /// kg·m.
     pub unbalance: f64,
-    /// How it bends, if it does; then its inertia is that of the beam.
+    /// Beam of a flexible body, whose inertia is that of the beam.
     pub beam: Option<Box<SceneBeam>>,
 }
 
-/// How a body bends; places count from the body's centre along its axis, m.
+/// Beam of a body; positions are relative to the body's centre along its axis, m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneBeam {
     pub beam: Beam,
-    /// Of its first end.
+    /// Position of its first end.
     pub start: f64,
     pub kept: Kept,
     /// 1/s.
     pub damping: f64,
-    /// Whether it brakes the rigid motion, too.
+    /// True if damping acts on the rigid motion too.
     pub absolute: bool,
     pub internal_damping: f64,
-    /// Where, and along X, Y, Z, N.
+    /// Position, and force along X, Y, Z, N.
     pub loads: Vec<(f64, [Profile; 3])>,
-    /// Where, kg·m, and rad from Y towards Z.
+    /// Position, kg·m, and angle in rad from Y towards Z.
     pub unbalances: Vec<(f64, f64, f64)>,
     pub watched: Vec<(String, f64)>,
-    /// Where a run steps its elements themselves.
+    /// `None` unless a run steps its elements.
     pub in_elements: Option<RaceJoint>,
 }
 
-/// What joins a race, or a disc, to its section of a shaft in elements (4.2.3).
+/// Spring between a race, or a disc, and its section of a shaft in elements (4.2.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RaceJoint {
     /// N/m.
@@ -145,10 +145,10 @@ pub struct RaceJoint {
     pub damping: f64,
 }
 
-/// Displacements and turns along and about the axes of a spring's first body.
+/// Displacements and rotations along and about the axes of a spring's first body.
 pub const SIX: [&str; 6] = ["x", "y", "z", "turn_x", "turn_y", "turn_z"];
 
-/// What a spring ends at.
+/// What a spring is attached to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpringAt {
     Ground,
@@ -165,7 +165,7 @@ pub enum SpringAt {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringEnd {
     pub at: SpringAt,
-    /// Place along the body's axis from its centre, of the ground along X, m.
+    /// Position along the body's axis from its centre, of the ground along X, m.
     pub along: f64,
 }
 
@@ -177,42 +177,42 @@ pub struct Spring {
     pub stiffness: [f64; 6],
     pub damping: [f64; 6],
     pub maxwell: Vec<MaxwellElement>,
-    /// What the stiffness and the Maxwell elements stand for.
+    /// Bushing whose stiffness and Maxwell elements these are.
     pub bushing: Option<Box<BushingOfSpring>>,
 }
 
-/// A bonded bushing between two bodies, reduced to springs that relax.
+/// A bonded bushing between two bodies, fitted by springs and Maxwell elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BushingOfSpring {
     pub body: Bushing,
     pub mesh: BushingMesh,
     pub material: Elastomer,
-    /// Table of the source that the rubber is of.
+    /// Table of the source with the rubber.
     pub table: Option<&'static str>,
-    /// Up to which frequency the springs were fitted, Hz.
+    /// Highest frequency of the fit, Hz.
     pub fastest: f64,
     /// Largest error of the complex stiffness over its magnitude, of each of
     /// [`SleeveMotion::ALL`](crate::solids::rubber::sleeve::SleeveMotion::ALL).
     pub misses: [f64; 4],
-    /// Where its elements move beside the bodies in place of the springs.
+    /// Elements in a run instead of the springs.
     pub elements: Option<BushingInElements>,
 }
 
-/// How the elements of a bushing are stepped.
+/// Integration of the elements of a bushing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BushingInElements {
     /// kg/m³.
     pub density: f64,
     pub stepping: BushingStepping,
-    /// How far a body may swing on it between two exchanges, rad.
+    /// Phase of a body on the bushing in a coupling step, rad.
     pub window_phase: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BushingStepping {
-    /// Four-node elements, by this part of the longest stable step.
+    /// Four-node elements, with this fraction of the longest stable step.
     Explicit { fraction: f64 },
-    /// Ten-node elements, by at most so many seconds, or as long as bodies and rubber go without each other.
+    /// Ten-node elements, with steps of at most this length (s); `None`: of a coupling step.
     Implicit { step: Option<f64> },
 }
 
@@ -230,15 +230,15 @@ impl AssemblyScene {
         }
     }
 
-    /// One bearing and what its outer race sits in, if that is flexible.
+    /// One bearing and its flexible housing, if any.
     pub(crate) fn of_one(scene: Scene, housing: Option<PlacedHousing>) -> AssemblyScene {
         let mut alone = AssemblyScene::alone(scene);
         alone.bearings[0].housing = housing;
         alone
     }
 
-    /// The bearing of a scene of one without a name where a bearing alone stands, with or without a housing; `None`
-    /// where there is more.
+    /// The bearing of a scene with one unnamed bearing at the usual position, with or without a housing; `None` for
+    /// other scenes.
     pub fn one(&self) -> Option<&PlacedBearing> {
         match &self.bearings[..] {
             [one] if one.is_alone() && self.bodies.is_empty() && self.springs.is_empty() => {
@@ -248,18 +248,18 @@ impl AssemblyScene {
         }
     }
 
-    /// The scene of a bearing alone; `None` where there is more.
+    /// The scene of a bearing alone; `None` for other scenes.
     pub fn only(&self) -> Option<&Scene> {
         self.one().filter(|one| one.housing.is_none()).map(|one| &one.scene)
     }
 
-    /// What all bearings share.
+    /// The scene with the common part.
     pub fn common(&self) -> &Scene {
         &self.bearings[0].scene
     }
 
-    /// The bearing alone, or in its housing, whose equilibrium is that of its inner race under what the scene writes for it:
-    /// where an outer race moves by itself, or a foundation holds a race, there is more to solve.
+    /// The bearing, alone or in its housing, whose equilibrium is that of its inner race under the scene's conditions;
+    /// `None` if an outer race moves by itself or a race has a foundation.
     pub fn one_still(&self) -> Option<&PlacedBearing> {
         self.one().filter(|one| {
             let of = &one.scene.dynamics;
@@ -268,16 +268,17 @@ impl AssemblyScene {
         })
     }
 
-    /// How the housings are solved, where there are any: all the same way.
+    /// Method of the housings; the same for all.
     pub fn housing_method(&self) -> Option<HousingMethod> {
         let mut housings = self.bearings.iter().filter_map(|placed| placed.housing.as_ref());
         housings.next().map(|housing| housing.settings.method)
     }
 
-    /// That no bore has friction, of which an equilibrium knows nothing.
+    /// Checks that no bore has friction, which an equilibrium cannot include.
     ///
     /// # Errors
-    /// The first bore that has.
+    ///
+    /// The first bore with friction.
     pub fn check_smooth(&self) -> Result<(), RoughBore> {
         let rough = |placed: &&PlacedBearing| {
             placed.housing.as_ref().is_some_and(|of| of.settings.friction.is_some())
@@ -287,13 +288,13 @@ impl AssemblyScene {
         Err(RoughBore { of })
     }
 
-    /// Whether elements of rubber move beside the bearings.
+    /// Returns whether elements of rubber move in a run.
     pub fn has_bushings_in_elements(&self) -> bool {
         let mut bushings = self.springs.iter().filter_map(|spring| spring.bushing.as_deref());
         bushings.any(|of| of.elements.is_some())
     }
 
-    /// Whether elements of a shaft move beside the bearings.
+    /// Returns whether elements of a shaft move in a run.
     pub fn has_shafts_in_elements(&self) -> bool {
         let mut beams = self.bodies.iter().filter_map(|body| body.beam.as_deref());
         beams.any(|beam| beam.in_elements.is_some())
@@ -306,18 +307,20 @@ impl AssemblyScene {
     /// The lists of the solver, with the scene's sensors.
     ///
     /// # Errors
-    /// Radii from which no contact, mass or cage can be built.
+    ///
+    /// Radii without a valid contact, mass or cage.
     pub fn assembly(&self) -> Result<Assembly, DynamicsError> {
         let mut all = self.bodies_and_bearings()?;
         all.sensors = self.sensors.iter().map(|sensor| sensor.of(&all)).collect();
         Ok(all)
     }
 
-    /// Bodies, bearings and connections in the order of the scene: its bodies, then of each bearing the races
-    /// that are bodies of their own and its cage, then the ground where a spring ends at it.
+    /// Bodies, bearings and connections in the order of the scene: its bodies, then of each bearing the races that are
+    /// bodies of their own and its cage, then the ground if a spring ends at it.
     ///
     /// # Errors
-    /// Radii from which no contact, mass or cage can be built.
+    ///
+    /// Radii without a valid contact, mass or cage.
     fn bodies_and_bearings(&self) -> Result<Assembly, DynamicsError> {
         if let Some(scene) = self.only() {
             return Ok(dynamic_problem(scene)?.assembly());
@@ -373,12 +376,12 @@ impl AssemblyScene {
         Ok(all)
     }
 
-    /// X of the place where an end of a spring stands at first, m.
+    /// Initial X of an end of a spring, m.
     pub(crate) fn place(&self, end: SpringEnd) -> f64 {
         end.along + race_at(&self.bearings, end.at)
     }
 
-    /// As scenes name it.
+    /// Name in scenes.
     pub fn name_of_end(&self, at: SpringAt) -> String {
         match at {
             SpringAt::Ground => "ground".into(),
@@ -393,17 +396,18 @@ impl AssemblyScene {
         }
     }
 
-    /// What is in equilibrium at t = 0: as a motion would start, without the centrifugal force of the balls
-    /// unless it is asked for.
+    /// Equilibrium at t = 0, as at the start of a motion, without the centrifugal force of the balls unless requested.
     ///
     /// # Errors
+    ///
+    /// See [`AssemblyScene::assembly`].
     /// As [`AssemblyScene::assembly`].
     pub fn statics(&self) -> Result<StaticAssembly<'static>, DynamicsError> {
         Ok(still_lists(self, &self.assembly()?))
     }
 }
 
-/// X of the centre at first of what a spring ends at, m: bodies and the ground stand at the origin.
+/// Initial X of the centre of what a spring ends at, m: bodies and the ground are at the origin.
 pub(crate) fn race_at(bearings: &[PlacedBearing], at: SpringAt) -> f64 {
     match at {
         SpringAt::Race { bearing, side } => bearings[bearing].carriers[side].at(),
@@ -439,7 +443,7 @@ fn add_bearing(all: &mut Assembly, placed: &PlacedBearing) -> Result<(), Dynamic
     Ok(())
 }
 
-/// Lets a body bend. Its centre is that of its mass from now on.
+/// Makes a body flexible. Its centre is then that of its mass.
 fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaftError> {
     let of_index = |mount: &&Mount| mount.body == index;
     let bearings = || all.bearings.iter().flat_map(|bearing| &bearing.mounts).filter(of_index);
@@ -494,7 +498,7 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
     Ok(())
 }
 
-/// A body as it was at X = 0, at `at`.
+/// Moves a body from X = 0 to `at`.
 fn move_along(body: &mut Body, at: f64) {
     body.rest[0] += at;
     if let Some(race) = body.driven_mut() {
@@ -502,12 +506,12 @@ fn move_along(body: &mut Body, at: f64) {
     }
 }
 
-/// A motion given along X, at `at` in place of X = 0.
+/// Moves a prescribed motion along X from X = 0 to `at`.
 fn move_drive(race: &mut DrivenBody, at: f64) {
     if let Drive::Motion(profile) = &mut race.drives[0] {
         *profile = profile.shifted(at);
     }
 }
 
-/// Mass of a body whose inertia nobody needs.
+/// Inertia of a body in an equilibrium.
 pub const NO_INERTIA: Inertia = Inertia { mass: 0.0, axial: 0.0, transverse: 0.0 };

@@ -1,7 +1,7 @@
-//! The shape that a mesh gives a bore: its cylinder, how round it is, whether edges follow it.
+//! Shape of a bore in its mesh: cylinder, out-of-roundness, curvature of edges.
 //!
-//! Fits are micrometres, and so is what a mesh can spoil. The contact of ten-node elements is at
-//! mid-side nodes, so that edges left straight make a bore smaller by most of their sagitta.
+//! Fits are micrometres, as are errors of a mesh. The contact of ten-node elements is at mid-side nodes, so that
+//! straight edges make a bore smaller by most of their sagitta.
 
 use crate::ch2_housing::bore_contact::Frame;
 use crate::kinematics::{Pose, euler};
@@ -18,27 +18,27 @@ use crate::solids::condensation::is_under;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
-/// Part of the radius by which nodes of a bore may lie off its cylinder. Bores that bearings are put
-/// in have tolerances up to IT7 of ISO 286, 30 um at a diameter of 71 mm, and are out of round by half
-/// of that at most: 0.4 thousandths of the radius. Beyond that it is the mesh, not the workshop.
+/// Largest distance of bore nodes from its cylinder, as a fraction of the radius. Bores for bearings have tolerances up
+/// to IT7 of ISO 286, 30 um at a diameter of 71 mm, and are out of round by half of that at most: 0.4 thousandths of
+/// the radius. Beyond that it is an error of the mesh.
 pub const LARGEST_OUT_OF_ROUND: f64 = 5e-4;
 
-/// Out-of-roundness that needs no word, m: the race sinks into steel by as much under 2.5 MPa, and
-/// coordinates with six decimals of a millimetre are better by ten.
+/// Negligible out-of-roundness, m: the race penetrates steel by as much under 2.5 MPa, and coordinates with six
+/// decimals of a millimetre are ten times better.
 pub const ROUND: f64 = 1e-8;
 
-/// Part of the sagitta by which the mid-side nodes of a bore may miss their arcs. Straight edges miss
-/// all of it, curved ones none at any fineness.
+/// Largest distance of mid-side nodes from their arcs, as a fraction of the sagitta: 1 for straight edges, 0 for curved
+/// ones.
 pub const LARGEST_MISSING: f64 = 0.25;
 
-/// Where a scene has its bore.
+/// The bore of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BorePlace {
     /// Surface set.
     pub set: String,
-    /// Outer race where its motion is measured from.
+    /// Nominal pose of the outer race.
     pub nominal: Pose,
-    /// Of the race, m; `None`: as wide as the bore.
+    /// Width of the race, m; `None`: as wide as the bore.
     pub width: Option<f64>,
 }
 
@@ -69,7 +69,7 @@ impl BorePlace {
     }
 }
 
-/// Faces that all look the same way.
+/// Faces with one common normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flat {
     /// m².
@@ -78,10 +78,10 @@ pub struct Flat {
     pub normal: [f64; 3],
 }
 
-/// Whether a set of faces is no piece of a bore but flat.
+/// Returns the area and normal if a set of faces is flat and so no part of a bore.
 pub fn flat(mesh: &TetMesh, faces: &[Face]) -> Option<Flat> {
-    /// Part of its area by which the vector area of a flat set may be smaller: far more than what the
-    /// rounding of printed nodes leaves, and far less than the 3e-3 of an arc of 15 degrees.
+    /// Largest relative difference of the vector area of a flat set: far more than rounding of printed nodes, far less
+    /// than the 3e-3 of an arc of 15 degrees.
     const FLAT: f64 = 1e-4;
     let normals = faces.iter().map(|face| 0.5 * face_normal(mesh, *face));
     let area: f64 = normals.clone().map(|normal| normal.norm()).sum();
@@ -92,27 +92,27 @@ pub fn flat(mesh: &TetMesh, faces: &[Face]) -> Option<Flat> {
     (length > 0.0 && is_flat).then_some(Flat { area, normal })
 }
 
-/// Mid-side nodes of a bore's edges against the arcs between their corners.
+/// Mid-side nodes of a bore's edges compared with the arcs between their corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MiddleNodes {
-    /// Edges whose two corners are on the cylinder.
+    /// Number of edges with both corners on the cylinder.
     pub count: usize,
-    /// Largest distance of a chord's middle from its arc, m: L²/8R of an edge of length L.
+    /// Largest sagitta, m: L²/8R of an edge of length L.
     pub sagitta: f64,
     /// Largest distance of a mid-side node inside its arc, m.
     pub inside: f64,
-    /// Mean distance inside the arcs over the mean sagitta: 1 where edges are straight.
+    /// Mean distance inside the arcs over the mean sagitta: 1 for straight edges.
     pub missing: f64,
 }
 
 impl MiddleNodes {
-    /// Whether the mesh has straight edges where the bore has arcs, by more than needs no word.
+    /// Returns whether the mesh has straight edges along arcs of a relevant sagitta.
     pub fn straight(&self) -> bool {
         self.sagitta > ROUND && self.missing > LARGEST_MISSING
     }
 }
 
-/// Those of `faces`, of ten-node elements. Arcs go through the corners, wherever rounding put these.
+/// Mid-side nodes of `faces` of ten-node elements. Arcs go through the corners, with their rounding.
 pub fn middle_nodes(mesh: &TetMesh, faces: &[Face], cylinder: &FittedCylinder) -> MiddleNodes {
     let mut found = MiddleNodes::default();
     if mesh.order() == Order::Linear {
@@ -145,10 +145,11 @@ pub fn middle_nodes(mesh: &TetMesh, faces: &[Face], cylinder: &FittedCylinder) -
     found
 }
 
-/// Ten-node elements from four-node ones, the mid-side nodes of the bore's edges on the cylinder
-/// through its corners; and what to say of it. Without a bore that is a cylinder edges stay straight.
+/// Ten-node elements from four-node ones, with the mid-side nodes of the bore's edges on the cylinder through its
+/// corners, and a note. If the bore is not a cylinder, edges stay straight.
 ///
 /// # Errors
+///
 /// Those of [`elevate`](crate::mesh::quadratic::elevate).
 pub fn elevate_with_bore(
     mesh: &TetMesh,
@@ -162,7 +163,7 @@ pub fn elevate_with_bore(
     let tolerance = LARGEST_OUT_OF_ROUND * cylinder.radius;
     let on = faces_on(mesh, &faces, &cylinder.surface(), tolerance);
     let elevated = elevate_faces(mesh, &[(cylinder.surface(), on.clone())])?;
-    // Corners and sides of elements are as they were, and so are faces.
+    // Corners and sides of elements have not changed, and so are the faces.
     let middles = middle_nodes(&elevated.mesh, &on, &cylinder);
     let note = (middles.count > 0).then(|| {
         let held_back = match elevated.pulled_back {
@@ -182,7 +183,7 @@ pub fn elevate_with_bore(
     Ok((elevated, note))
 }
 
-/// Faces of the bore's set, also where the scene makes the set by geometry; none if there is none.
+/// Faces of the bore's set, also if the scene makes the set by geometry; empty if there is none.
 fn bore_faces(mesh: &TetMesh, request: &MeshRequest, set: &str) -> Vec<Face> {
     if let Some(faces) = mesh.surface_sets.get(set) {
         return faces.clone();

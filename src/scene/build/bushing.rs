@@ -1,4 +1,4 @@
-//! From bushings of a scene that are solved in elements to these elements between their bodies.
+//! From bushings of a scene in elements to these elements between their bodies.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::plan::rubber::Bonded;
@@ -17,12 +17,12 @@ use crate::solids::rubber::model::{RubberModel, RubberProblem};
 use crate::solids::rubber::tet_forces::MeanStress;
 use thiserror::Error;
 
-/// The elements of a bushing, and what it is bonded to.
+/// The elements of a bushing and its bodies.
 #[derive(Clone, Debug)]
 pub struct BushingElements {
-    /// Of the spring.
+    /// Name of the spring.
     pub name: String,
-    /// Ten-node elements with their mass, but for that of the nodes that bodies carry.
+    /// Ten-node elements with their mass, without that of the sleeve nodes.
     pub model: RubberModel,
     pub solved: Solved,
     sleeves: [Sleeve; 2],
@@ -30,16 +30,16 @@ pub struct BushingElements {
     window_phase: f64,
 }
 
-/// How the elements of a bushing are stepped.
+/// Integration of the elements of a bushing.
 #[derive(Clone, Debug)]
 pub enum Solved {
-    /// Four-node elements of the same corners, by this part of the longest stable step.
+    /// Four-node elements of the same corners, with this fraction of the longest stable step.
     Explicit { body: Box<RubberBody>, fraction: f64 },
-    /// By at most so many seconds.
+    /// Steps of at most this length, s.
     Implicit { step: Option<f64> },
 }
 
-/// What bushings in elements cannot be made of.
+/// Error in the elements of a bushing.
 #[derive(Debug, Error)]
 #[error("the bushing of spring {name}: {reason}")]
 pub struct BushingError {
@@ -47,10 +47,12 @@ pub struct BushingError {
     pub reason: String,
 }
 
-/// Takes springs that are bushings in elements out of an assembly of the scene and makes these; the bodies of their
+/// Removes springs that are bushings in elements from an assembly of the scene and makes these; the bodies of their
 /// sleeves get the mass of the nodes there.
 ///
 /// # Errors
+///
+/// Sizes and rubber without a valid mesh or material.
 /// Sizes and rubber from which there is no mesh or material.
 pub fn take_bushings(
     scene: &AssemblyScene,
@@ -97,7 +99,7 @@ fn made(
     let solid = bushing(&of.body, &whole(of)).map_err(|error| error.to_string())?;
     let four = solid.mesh.clone();
     let ten = solid.quadratic().map_err(|error| error.to_string())?.mesh;
-    // The ground has the outer sleeve; else the first body has it.
+    // The ground has the outer sleeve; otherwise the first body has it.
     let outer = usize::from(spring.ends[1].at == SpringAt::Ground);
     let middle = scene.place(spring.ends[outer]);
     let sleeve = |end: usize, set: &str| {
@@ -121,7 +123,7 @@ fn made(
     let solved = match elements.stepping {
         BushingStepping::Implicit { step } => Solved::Implicit { step },
         BushingStepping::Explicit { fraction } => {
-            // Four-node elements have corners alone.
+            // Four-node elements have corners only.
             let corners = four.nodes.len() as u32;
             for sleeve in &mut sleeves {
                 let own = sleeve.nodes.iter().zip(&sleeve.arms);
@@ -135,7 +137,7 @@ fn made(
     Ok(BushingElements { name, model, solved, sleeves, spring, window_phase })
 }
 
-/// Every component of the nodes of a sleeve; bodies say where they are.
+/// All components of the nodes of a sleeve, which move with a body.
 fn carried<'m>(mesh: &'m TetMesh, set: &str) -> impl Iterator<Item = Prescribed> + use<'m> {
     let nodes = mesh.node_sets.get(set).into_iter().flatten();
     nodes.flat_map(|node| {
@@ -174,7 +176,7 @@ fn ten_nodes(
 }
 
 impl BushingElements {
-    /// As it takes part in a run.
+    /// The bushing in a run.
     pub fn part(&self) -> BondedPart<'_> {
         let elements = match &self.solved {
             Solved::Explicit { body, fraction } => {
@@ -189,7 +191,7 @@ impl BushingElements {
         BondedPart { name, sleeves, spring, elements, window_phase }
     }
 
-    /// As a plan has it, the `index`-th solid of a run.
+    /// The bushing in a plan, as the `index`-th solid of a run.
     pub fn planned(&self, index: usize) -> Bonded<'_> {
         let problem = &self.model.problem;
         let (name, terms) = (self.name.as_str(), problem.material.maxwell.len());
@@ -197,7 +199,7 @@ impl BushingElements {
         Bonded { name, index, is_explicit, elements: problem.elements.len(), terms }
     }
 
-    /// kg, of the nodes that its sleeves have, whoever carries them.
+    /// Masses of the nodes, kg, sleeves included.
     fn all_masses(&self, density: f64) -> Vec<f64> {
         match &self.solved {
             Solved::Explicit { body, .. } => {

@@ -1,4 +1,4 @@
-//! Materials of an input deck beside the one that a scene names.
+//! Materials of an input deck compared with that of the scene.
 
 use crate::mesh::read::DeckMaterial;
 use crate::numeric::clock::to_digits;
@@ -6,8 +6,8 @@ use crate::scene::build::solid::SolidSetupError;
 use crate::scene::build::solid_mesh::BuiltMesh;
 use crate::scene::resolve::solid_scene::SolidScene;
 
-/// Materials of a deck beside the one of the scene: notes where they differ from it, an error where the
-/// scene has only defaults for what the deck has.
+/// Compares materials of a deck with that of the scene: notes for differences, an error if the scene has only defaults
+/// for values of the deck.
 pub(crate) fn deck_materials(
     scene: &SolidScene,
     elastic: [f64; 2],
@@ -18,7 +18,7 @@ pub(crate) fn deck_materials(
     };
     let [no_young, no_poisson, no_density] =
         ["youngs_modulus", "poisson_ratio", "density"].map(defaulted);
-    // To the digits in which people write moduli.
+    // Within the digits of usual moduli.
     let differ = |a: f64, b: f64| (a - b).abs() > 1e-3 * b.abs();
     let given: Vec<&DeckMaterial> =
         built.materials.iter().filter(|m| m.elastic.is_some() || m.density.is_some()).collect();
@@ -26,7 +26,7 @@ pub(crate) fn deck_materials(
     for material in &given {
         let [young, poisson] = material.elastic.unwrap_or(elastic);
         let density = material.density.unwrap_or(scene.density);
-        // Of the deck and of the scene; whether the scene only has steel's; name and text.
+        // Values of the deck and of the scene; whether the scene has only steel's; name and text.
         let parts = [
             (young, elastic[0], no_young, "youngs_modulus", gigapascals as fn(f64) -> String),
             (poisson, elastic[1], no_poisson, "poisson_ratio", |value| value.to_string()),
@@ -60,7 +60,7 @@ pub(crate) fn deck_materials(
         }
         let differing: Vec<_> = differing
             .map(|(of_deck, of, _, name, text)| {
-                format!("{name} {} counts, not {}", text(*of), text(*of_deck))
+                format!("{name} {} is used, not {}", text(*of), text(*of_deck))
             })
             .collect();
         if !differing.is_empty() {
@@ -72,7 +72,7 @@ pub(crate) fn deck_materials(
     }
     if given.len() > 1 {
         notes.push(format!(
-            "the deck has {} materials: the whole body is of the one of the scene",
+            "the deck has {} materials: the scene's is used for the whole body",
             given.len()
         ));
     }

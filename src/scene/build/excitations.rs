@@ -1,4 +1,5 @@
-//! What drives bearings, bodies and housings, and how fast: what equilibria must be slow against.
+//! Excitations of bearings, bodies and housings, and their frequencies: a quasi-static sequence must be slow compared
+//! with natural frequencies.
 
 use crate::assembly::loads::{Drive, DrivenBody, RotatingLoad, Rotation};
 use crate::numeric::profile::Profile;
@@ -6,19 +7,19 @@ use crate::scene::build::assembly::{AssemblyScene, Carrier, PlacedBearing};
 use crate::scene::build::statics::kinematic_ratios;
 use std::f64::consts::TAU;
 
-/// Something that drives bodies and housings, and its frequency.
+/// An excitation of bodies and housings, and its frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
     pub what: String,
     /// Hz.
     pub frequency: f64,
-    /// Whether it goes on and on, as a ramp does not.
+    /// True for a periodic excitation, false for a ramp.
     pub repeats: bool,
-    /// Whether it is the ripple of a load that goes from ball to ball.
+    /// True for the ripple of a load as balls pass it.
     pub is_ripple: bool,
 }
 
-/// All that drives a scene at a frequency of its own: what a quasi-static course must be slow against.
+/// All excitations of a scene.
 pub fn excitations(scene: &AssemblyScene) -> Vec<Excitation> {
     let mut found = Vec::new();
     let end = scene.run().map_or(0.0, |run| run.end);
@@ -30,7 +31,7 @@ pub fn excitations(scene: &AssemblyScene) -> Vec<Excitation> {
         add_turning(
             &mut found,
             &key,
-            &format!("the load's turns on {key}"),
+            &format!("the rotation of the load on {key}"),
             &body.rotating_load,
             end,
         );
@@ -69,8 +70,8 @@ fn of_bearing(
                 None => "inner_race".into(),
             };
             let turns = match &placed.name {
-                Some(name) => format!("the load's turns on {name}"),
-                None => "the load's turns".into(),
+                Some(name) => format!("the rotation of the load on {name}"),
+                None => "the rotation of the load".into(),
             };
             add_turning(found, &key, &turns, &dynamics.rotating_load, end);
             &dynamics.rotating_load
@@ -86,7 +87,7 @@ fn of_bearing(
         Rotation::Speed(speed) => speed.value(t),
         Rotation::Torque(_) => 0.0,
     };
-    // The load turns past balls that turn too, one way or the other.
+    // The load rotates relative to balls that orbit too.
     let against_balls = most(end, |t| {
         let load = load.as_ref().map_or(0.0, |load| load.speed.value(t));
         let outer = outer.map_or(0.0, |outer| turns(outer, t));
@@ -100,7 +101,7 @@ fn of_bearing(
         found.push(Excitation { what: passing, frequency, repeats, is_ripple });
     }
     if let Some(ramp) = placed.housing.as_ref().and_then(|housing| housing.settings.fit_ramp) {
-        add(found, format!("the fit{of} that grows in"), 0.5 / ramp, false);
+        add(found, format!("the growth of the fit{of}"), 0.5 / ramp, false);
     }
 }
 
@@ -110,7 +111,7 @@ fn add(found: &mut Vec<Excitation>, what: String, frequency: f64, repeats: bool)
     }
 }
 
-/// A load or motion that is given over time.
+/// A prescribed load or motion over time.
 fn add_profile(found: &mut Vec<Excitation>, what: String, profile: &Profile) {
     add(found, what, frequency(profile), profile.cycles() > 0.0);
 }
@@ -135,17 +136,17 @@ fn add_turning(
     add(found, turns.into(), largest(&load.speed, end) / TAU, true);
 }
 
-/// Largest size of a speed up to the end of a run.
+/// Largest magnitude of a speed up to the end of a run.
 pub fn largest(profile: &Profile, end: f64) -> f64 {
     most(end, |t| profile.value(t))
 }
 
-/// The largest size of what changes over time. Speeds are ramps and tables; a hundred looks find what counts here.
+/// Largest magnitude over time. Speeds are ramps and tables; a hundred samples are sufficient.
 fn most(end: f64, of: impl Fn(f64) -> f64) -> f64 {
     (0..=100).map(|i| of(end * f64::from(i) / 100.0).abs()).fold(0.0, f64::max)
 }
 
-/// Of a swing that rises and falls as fast as the profile does, Hz; 0 for a constant one.
+/// Frequency of an oscillation with the slope of the profile, Hz; 0 for a constant one.
 pub fn frequency(profile: &Profile) -> f64 {
     match profile {
         Profile::Constant(_) => 0.0,

@@ -1,4 +1,4 @@
-//! From a bearing in a housing and the housing's mesh to what the solver takes, and what drives it.
+//! From a bearing in a housing and the housing's mesh to the inputs of the solver.
 
 use crate::ch2_housing::bore_contact::{ContactNode, Frame, Penalty, contact_nodes};
 use crate::kinematics::Pose;
@@ -18,9 +18,9 @@ use crate::solids::model::SolidModel;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
-/// Part of the race's radius by which the bore may differ from it, and be out of centre.
+/// Largest difference of the bore from the race, and its eccentricity, as a fraction of the race's radius.
 const FAR_OFF: f64 = 0.05;
-/// Part of an interference below which out-of-roundness changes pressures by no more than this part.
+/// Out-of-roundness as a fraction of an interference below which pressures change by no more than that fraction.
 const SMALL: f64 = 0.01;
 
 /// A housing ready for its bearing.
@@ -28,28 +28,29 @@ const SMALL: f64 = 0.01;
 pub struct HousingSetup {
     pub solid: SolidSetup,
     pub model: SolidModel,
-    /// Nodes of the bore that carry a part of its surface.
+    /// Bore nodes with a share of its surface.
     pub nodes: Vec<ContactNode>,
-    /// Of the cylinder that lies nearest to those under the race, m.
+    /// Radius of the best-fit cylinder through the nodes under the race, m.
     pub bore_radius: f64,
-    /// Largest distance of those from it, m.
+    /// Largest distance of these nodes from it, m.
     pub out_of_round: f64,
     /// Distance of its axis from the race's centre, m.
     pub off_centre: f64,
-    /// What the bore's own shape does to the results, where that is worth a word.
+    /// Effect of the bore's shape on the results, if it is relevant.
     pub caution: Option<String>,
-    /// What is no error and perhaps not meant.
+    /// Notes on valid but unusual input.
     pub notes: Vec<String>,
-    /// Radial, m; negative is clearance.
+    /// Radial interference, m; negative for clearance.
     pub interference: f64,
-    /// Of the outer race, m.
+    /// Width of the outer race, m.
     pub width: f64,
-    /// Outer race where its motion is measured from.
+    /// Nominal pose of the outer race.
     pub nominal: Pose,
 }
 
 /// # Errors
-/// A set that is not there, a bore that is not about the race, a model that cannot be set up.
+///
+/// A missing set, a bore that is not around the race, an invalid model.
 pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, HousingSetupError> {
     let mesh = &built.mesh;
     let solid = solid_setup(&scene.solid, built)?;
@@ -83,13 +84,13 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     let farthest = distances.iter().copied().fold(0.0, f64::max);
     let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-    // Written as it is so that a place that is not a number is refused as well.
+    // Written so that NaN is refused.
     let round = farthest - nearest <= FAR_OFF * mean;
     if !round {
         let lies = Lies::of(&seen);
         return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
     }
-    // Straight edges would make a coarse bore look far too small.
+    // Straight edges would make a coarse bore seem too small.
     let size = corners.map_or(mean, |corners| corners.radius);
     let sizes = &scene.bearing.dimensions;
     let given = match scene.housing.fit {
@@ -167,13 +168,13 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     })
 }
 
-/// A race that is wider than the seat under it, which lies between these places along its axis, m.
+/// Note for a race wider than the bore under it, which extends between these positions along its axis, m.
 fn overhang(width: f64, [low, high]: [f64; 2]) -> Option<String> {
     let beside = (0.5 * width - high).max(0.0) + (0.5 * width + low).max(0.0);
-    // A thousandth of the width is what meshes and drawings round.
+    // A thousandth of the width is rounding of meshes and drawings.
     (beside > 1e-3 * width).then(|| {
         format!(
-            "of the outer race's {:.4} mm of width {:.4} mm lie beside the bore, which goes from {:.4} to {:.4} \
+             "{:.4} mm of the outer race's width of {:.4} mm are beside the bore, which extends from {:.4} to {:.4} \
              mm along the axis from the race's centre: they bear on nothing, and pressure is high at the \
              bore's edge. If that is not meant, check housing.width and outer_race.x",
             1e3 * width,
@@ -184,20 +185,20 @@ fn overhang(width: f64, [low, high]: [f64; 2]) -> Option<String> {
     })
 }
 
-/// A bore whose axis lies beside the race's centre by more than its fit, m.
+/// Note for a bore whose axis is off the race's centre by more than its fit, m.
 fn beside_the_axis(off: f64, interference: f64) -> Option<String> {
-    /// What drawings and meshes round.
+    /// Rounding of drawings and meshes.
     const ROUNDED: f64 = 1e-6;
     (off > interference.abs() + ROUNDED).then(|| {
         format!(
-            "the bore's axis lies {:.4} um beside the race's centre, more than the fit: an explicit run that begins undeformed has the \
-             race so deep in the wall. If that is not meant, check solid.mesh.origin",
+             "the bore's axis is {:.4} um off the race's centre, more than the fit: an explicit run that begins undeformed has the \
+              race so deep in the wall. If that is not meant, check solid.mesh.origin",
             1e6 * off
         )
     })
 }
 
-/// Nodes of the bore that a support holds across the axis.
+/// Bore nodes fixed across the axis by a support.
 fn held_nodes(
     bore: &str,
     under: BTreeSet<u32>,
@@ -212,27 +213,27 @@ fn held_nodes(
     }
     Ok((!held.is_empty()).then(|| {
         format!(
-            "{} of {count} nodes of the bore under the race are held by [[solid.fixed]] and do not give way: \
-             they take more of the load than a bore's would",
+            "{} of {count} nodes of the bore under the race are fixed by [[solid.fixed]]: \
+              they carry more of the load than those of a free bore would",
             held.len()
         )
     }))
 }
 
-/// Rings are rigid: what that does to a fit, beside what a ring of its thickness would do.
+/// Rings are rigid: effect on a fit, compared with a thin ring.
 fn rigid_rings(scene: &HousedScene, radius: f64, interference: f64) -> Option<String> {
-    // Below this no fit is asked for: rounding of a given outer radius.
+    // Below this there is no fit, only rounding of a given outer radius.
     if interference <= 1e-9 * radius {
         return None;
     }
     let thickness = radius - scene.bearing.dimensions.outer_race.radius;
     let mean = radius - 0.5 * thickness;
-    // A thin ring under outer pressure p becomes smaller by p r²/(E t).
+    // A thin ring under outer pressure p shrinks by p r²/(E t).
     let alone =
         scene.bearing.outer_material.youngs_modulus * thickness * interference / (mean * radius);
     let ring = if thickness > 0.0 {
         format!(
-            "; a thin ring as thick as from groove to seat, {:.3} mm, would give way by all of the fit under \
+            "; a thin ring as thick as from groove to outer surface, {:.3} mm, would shrink by all of the fit under \
              {:.3} MPa, and the parts share it by their stiffness",
             1e3 * thickness,
             1e-6 * alone
@@ -247,8 +248,8 @@ fn rigid_rings(scene: &HousedScene, radius: f64, interference: f64) -> Option<St
     ))
 }
 
-/// Of a bore so far (m) off its cylinder, where that is not small beside an interference or, under
-/// any fit, beside how far the race sinks into its seat.
+/// Caution for a bore out of round (m), unless that is small compared with an interference or with the race's
+/// penetration.
 fn caution(off: f64, interference: f64, penalty: Penalty) -> Option<String> {
     if off <= ROUND.max(SMALL * interference) {
         return None;
@@ -267,10 +268,10 @@ fn caution(off: f64, interference: f64, penalty: Penalty) -> Option<String> {
     ))
 }
 
-/// Where along the axis the nodes under a race of `width` (m) lie, m, if that is in one place.
+/// Axial position of the nodes under a race of `width` (m), m, if they are close together.
 ///
-/// They resist a tilt by the second moment of what they carry; spread evenly they lie 0.29 widths from their
-/// middle, in two rows as close as a fifth of the width 0.1.
+/// They resist a tilt by the second moment of their shares; their spread is 0.29 widths if even, 0.1 in two rows a
+/// fifth of the width apart.
 fn one_row(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64) -> Option<f64> {
     const CLOSEST: f64 = 0.1;
     let under = || nodes.iter().zip(seen).filter(|(_, place)| is_under(place[0], width));
@@ -278,12 +279,11 @@ fn one_row(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64) -> Option<f64> 
     let middle = under().map(|(node, at)| node.area * at[0]).sum::<f64>() / area;
     let spread = under().map(|(node, at)| node.area * (at[0] - middle) * (at[0] - middle));
     let spread = (spread.sum::<f64>() / area).sqrt();
-    // Not `<`: a place that is not a number is no row.
+    // Not `<`: NaN is no row.
     (spread <= CLOSEST * width).then_some(middle)
 }
 
-/// Area that the nodes under a race of `width` carry, over the part of the bore (of length `length`, m) that
-/// it covers.
+/// Area of the nodes under a race of `width`, over the part of the bore (of length `length`, m) that it covers.
 fn share_of_seat(nodes: &[ContactNode], seen: &[[f64; 3]], width: f64, length: f64) -> f64 {
     let under = |place: &[f64; 3]| is_under(place[0], width);
     let all: f64 = nodes.iter().map(|node| node.area).sum();
@@ -304,21 +304,22 @@ impl HousingSetup {
         }
     }
 
-    /// Nodes a condensed housing keeps: all under the race.
+    /// Nodes of a condensed housing: all under the race.
     pub fn reach(&self) -> Reach {
         let radius = self.bore_radius + self.interference.max(0.0);
         Reach { nominal: self.nominal, radius, width: self.width, travel: None }
     }
 
-    /// The race as fully grown into its fit.
+    /// The race with its full fit.
     pub fn fit(&self, scene: &HousedScene) -> Fit {
         Fit { radius: self.bore_radius + self.interference, axial: scene.housing.axial }
     }
 }
 
-/// What a condensed housing cannot have.
+/// Checks for a condensed housing.
 ///
 /// # Errors
+///
 /// [`HousingSetupError::VaryingLoad`], [`HousingSetupError::MovedSupport`].
 pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
     let constant = |profile: &Profile| matches!(profile, Profile::Constant(_));
@@ -332,9 +333,10 @@ pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
     check_supports(scene)
 }
 
-/// What a linear housing that is taken as its bore sees it cannot have.
+/// Checks for a linear housing represented by its bore.
 ///
 /// # Errors
+///
 /// [`HousingSetupError::MovedSupport`].
 pub fn check_supports(scene: &HousedScene) -> Result<(), HousingSetupError> {
     for (index, held) in scene.solid.held.iter().enumerate() {

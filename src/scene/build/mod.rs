@@ -1,4 +1,4 @@
-//! From a resolved scene to the lists, problems and meshes that the solvers take.
+//! From a resolved scene to the lists, problems and meshes of the solvers.
 
 pub mod about;
 pub mod assembly;

@@ -1,4 +1,4 @@
-//! From a resolved scene to the bearing in motion that it describes.
+//! From a resolved scene to its bearing in motion.
 
 use crate::assembly::loads::{DrivenBody, DynamicProblem};
 use crate::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
@@ -8,7 +8,7 @@ use crate::members::shaft_modes::FreeShaftError;
 use crate::scene::resolve::resolved::{CageInRun, RunSettings, Scene};
 use thiserror::Error;
 
-/// Why a valid scene cannot be run.
+/// Errors of a valid scene in a run.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DynamicsError {
     #[error(transparent)]
@@ -24,7 +24,7 @@ pub enum DynamicsError {
     )]
     CageLength { length: f64 },
     #[error(
-        "numerics.end: missing; it makes a scene one of a run. Hint: add a table [numerics] with `end = \"0.1 s\"`"
+        "numerics.end: missing; a run needs it. Hint: add a table [numerics] with `end = \"0.1 s\"`"
     )]
     NoEnd,
     #[error("body.{body}.beam: {error}")]
@@ -34,7 +34,8 @@ pub enum DynamicsError {
 /// The bearing in motion of a scene.
 ///
 /// # Errors
-/// Radii from which no contact, mass or cage can be built.
+///
+/// Radii without a valid contact, mass or cage.
 pub fn dynamic_problem(scene: &Scene) -> Result<DynamicProblem, DynamicsError> {
     let geometry = scene.geometry;
     let dynamics = &scene.dynamics;
@@ -89,10 +90,11 @@ fn check_mass(part: &'static str, race: &DrivenBody) -> Result<(), DynamicsError
     }
 }
 
-/// How the scene's run steps and what it writes.
+/// Steps and output of the scene's run.
 ///
 /// # Errors
-/// A scene that gives no end of the run.
+///
+/// A scene without an end of the run.
 pub fn run_options(scene: &Scene) -> Result<RunSettings, DynamicsError> {
     scene.dynamics.run.clone().ok_or(DynamicsError::NoEnd)
 }

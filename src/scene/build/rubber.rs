@@ -1,4 +1,4 @@
-//! From a scene with a solid of rubber and its mesh to what the implicit steps take.
+//! From a scene with a solid of rubber and its mesh to the inputs of the implicit steps.
 
 use crate::elements::tet10::{shape_functions, stiffness_rule};
 use crate::mesh::{Elements, TetMesh};
@@ -11,7 +11,7 @@ use crate::solids::model::{Load, Prescribed};
 use crate::solids::rubber::model::{RubberModel, RubberProblem};
 use std::collections::BTreeSet;
 
-/// A solid of rubber ready to be solved, and what is to be written of it.
+/// A solid of rubber ready to be solved, and its outputs.
 #[derive(Clone, Debug)]
 pub struct RubberSetup {
     pub model: RubberModel,
@@ -21,12 +21,13 @@ pub struct RubberSetup {
     pub probes: Vec<NamedNodes>,
     /// Supports; their reactions are written.
     pub supports: Vec<Support>,
-    /// What is no error and perhaps not meant.
+    /// Notes on valid but unusual input.
     pub notes: Vec<String>,
 }
 
 /// # Errors
-/// As [`crate::scene::build::solid::setup`]; a mesh of four-node elements, a body that no model is made of.
+///
+/// Those of [`crate::scene::build::solid::setup`]; a mesh of four-node elements; an invalid model.
 pub fn rubber_setup(
     scene: &SolidScene,
     rubber: &RubberScene,
@@ -56,7 +57,7 @@ pub fn rubber_setup(
     Ok(RubberSetup { model, labels, density: scene.density, probes, supports, notes })
 }
 
-/// Sleeves of a generated bushing that are held along some axes and free along others, as nothing bonded is.
+/// Notes for sleeves of a generated bushing that are fixed along some axes only, unlike a bonded one.
 fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
     if !matches!(scene.mesh.source, MeshSource::Bushing(..)) {
         return Vec::new();
@@ -70,8 +71,8 @@ fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
         let slides = !held.is_empty() && !free.is_empty();
         slides.then(|| {
             format!(
-                "the sleeve \"{set}\" is held along {} alone: its rubber slides along {}, where rubber that is bonded to a \
-                 sleeve is held along all three",
+                 "the sleeve \"{set}\" is fixed along {} alone: its rubber slides along {}, where rubber that is bonded to a \
+                  sleeve is fixed along all three",
                 names(&held),
                 names(&free)
             )
@@ -80,10 +81,10 @@ fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
     ["inner", "outer"].into_iter().filter_map(said).collect()
 }
 
-/// Instants between corners at which given motions are looked at.
+/// Samples of prescribed motions between corners.
 const LOOKS: usize = 200;
 
-/// The sleeves of a generated bushing never come so far across that its wall has no room left.
+/// Checks that the sleeves of a generated bushing stay apart across its wall.
 fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
     let MeshSource::Bushing(body, _) = &scene.mesh.source else { return Ok(()) };
     let wall = body.thickness;
@@ -114,8 +115,8 @@ fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
     Ok(())
 }
 
-/// A set that vibrates has no node that another set holds along the same axis: a quarter has no answer to motion
-/// across its planes of symmetry.
+/// Checks that no node of a vibrating set is in another set along the same axis: a quarter cannot move across its
+/// planes of symmetry.
 fn moves_as_a_whole(
     scene: &SolidScene,
     mesh: &TetMesh,
@@ -123,7 +124,7 @@ fn moves_as_a_whole(
 ) -> Result<(), SolidSetupError> {
     let holds = |held: &&Held| held.motion[asked.axis].is_some();
     if !scene.held.iter().filter(holds).any(|held| held.set == asked.set) {
-        // Said where its stiffness is asked for.
+        // Reported where its stiffness is requested.
         return Ok(());
     }
     let nodes = |set: &str| mesh.node_sets.get(set).map(Vec::as_slice).unwrap_or_default();
@@ -154,7 +155,8 @@ fn weight(model: &RubberModel, density: f64, gravity: [f64; 3]) -> Load {
 /// The same body with one set moved by 1 m along an axis, all other supports at rest and no loads.
 ///
 /// # Errors
-/// A set that the supports do not hold along that axis, or one against which nothing is held.
+///
+/// A set that is not a support along that axis, or without another support.
 pub fn vibrating(setup: &RubberSetup, asked: &Harmonic) -> Result<RubberModel, SolidSetupError> {
     let known = || setup.supports.iter().map(|support| support.name.clone()).collect();
     let support = setup.supports.iter().find(|support| support.name == asked.set);

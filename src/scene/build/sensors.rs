@@ -1,4 +1,4 @@
-//! Sensors as scenes have them, and as the solver takes them.
+//! Sensors of a scene, and those of the solver.
 
 use crate::assembly::lists::Assembly;
 use crate::ch5_cage::telemeter::Telemeter;
@@ -16,10 +16,10 @@ pub struct SceneSensor {
 pub enum SceneSensorKind {
     Accelerometer {
         at: SensorAt,
-        /// Along the body's axis and from it, m.
+        /// Position along the body's axis and distance from it, m.
         along: f64,
         radius: f64,
-        /// rad, from +Y towards +Z.
+        /// Angle, rad, from +Y towards +Z.
         angle: f64,
         direction: Direction,
     },
@@ -35,14 +35,14 @@ pub enum SceneSensorKind {
     },
 }
 
-/// What an accelerometer sits on.
+/// Mount of an accelerometer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorAt {
     /// Index in the scene's bodies.
     Body(usize),
     /// Inner (0) or outer (1) race of this bearing.
     Race { bearing: usize, side: usize },
-    /// Of this bearing.
+    /// Cage of this bearing.
     Cage(usize),
 }
 
@@ -56,7 +56,7 @@ pub enum Direction {
 impl Direction {
     pub const ALL: [Direction; 3] = [Direction::Radial, Direction::Tangential, Direction::Axial];
 
-    /// As in a scene.
+    /// Name in scenes.
     pub const fn name(self) -> &'static str {
         match self {
             Direction::Radial => "radial",
@@ -67,7 +67,7 @@ impl Direction {
 }
 
 impl AssemblyScene {
-    /// What a sensor sits on, as scenes name it.
+    /// Name of a mount in scenes.
     pub fn name_of_place(&self, at: SensorAt) -> String {
         let of = |bearing: usize| {
             let name = self.bearings[bearing].name.as_ref();
@@ -82,7 +82,7 @@ impl AssemblyScene {
 }
 
 impl SceneSensor {
-    /// What the solver takes, on the bodies and bearings of this assembly.
+    /// Sensor of the solver, on the bodies and bearings of this assembly.
     pub(crate) fn of(&self, assembly: &Assembly) -> Sensor {
         let kind = match self.kind {
             SceneSensorKind::Accelerometer { at, along, radius, angle, direction } => {
@@ -90,7 +90,7 @@ impl SceneSensor {
                 let body = match at {
                     SensorAt::Body(body) => body,
                     SensorAt::Race { bearing: of, side } => bearing(of).mounts[side].body,
-                    // One that is not there is refused when the scene is read.
+                    // A missing cage is refused when the scene is read.
                     SensorAt::Cage(of) => bearing(of).cage.as_ref().map_or(0, |cage| cage.body),
                 };
                 let (sin, cos) = libm::sincos(angle);
@@ -100,7 +100,7 @@ impl SceneSensor {
                     Direction::Tangential => [0.0, -sin, cos],
                     Direction::Axial => [1.0, 0.0, 0.0],
                 };
-                // The cage of a bearing that is put in the other way round begins half a turn about Z away.
+                // The cage of a reversed bearing starts half a turn about Z away.
                 let turned = matches!(at, SensorAt::Cage(of) if bearing(of).mounts[1].reversed);
                 let own = |[x, y, z]: [f64; 3]| if turned { [-x, -y, z] } else { [x, y, z] };
                 let (place, direction) = (own(place), own(direction));

@@ -1,4 +1,4 @@
-//! The shafts of a scene that a run steps in elements: out of the lists of bodies, into solids with what sits on them.
+//! Shafts of a scene in elements: from bodies to solids with their attachments.
 
 use crate::assembly::lists::{Assembly, Body, INNER, Mobility};
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};
@@ -17,10 +17,10 @@ use crate::solids::condensed_shaft::{SolidShaftError, section};
 use crate::solids::model::{Load, SolidError, SolidModel, SolidProblem};
 use thiserror::Error;
 
-/// A shaft ready to be stepped.
+/// A shaft ready for explicit steps.
 #[derive(Clone, Debug)]
 pub struct ShaftElements {
-    /// Of its body, and its index.
+    /// Name of its body, and index.
     pub name: String,
     pub body: usize,
     pub mesh: TetMesh,
@@ -28,8 +28,8 @@ pub struct ShaftElements {
 }
 
 impl ShaftElements {
-    /// Σ m (y, z), kg·m, and Σ m x (y, z) about their centre, kg·m²: how far lumped masses of a mesh that is not alike all around are
-    /// out of balance, statically and as a couple.
+    /// Σ m (y, z), kg·m, and Σ m x (y, z) about their centre, kg·m²: static and couple unbalance of lumped masses of a
+    /// mesh that is not quite axisymmetric.
     pub fn imbalance(&self) -> [[f64; 2]; 2] {
         let model = &self.part.model;
         let nodes = || model.mass.iter().zip(&model.problem.nodes);
@@ -68,14 +68,15 @@ enum Reason {
     Solid(#[from] SolidError),
 }
 
-/// Two things are at one place of a shaft that are nearer than this part of its length.
+/// Positions on a shaft closer than this fraction of its length are equal.
 const SAME: f64 = 1e-9;
 
-/// Takes shafts in elements out of an assembly of the scene and makes these. Each race on them, and each disc, is a body of its
-/// own from then on, which turns with the shaft's speed.
+/// Removes shafts in elements from an assembly of the scene and makes these. Each race and disc on them becomes a body
+/// of its own, which rotates with the shaft's speed.
 ///
 /// # Errors
-/// Sizes from which there is no mesh.
+///
+/// Sizes without a valid mesh.
 pub fn take_shafts(
     scene: &AssemblyScene,
     assembly: &mut Assembly,
@@ -91,10 +92,10 @@ pub fn take_shafts(
     Ok(found)
 }
 
-/// Index of a body, and where along X it sits, m.
+/// Index of a body, and its position along X, m.
 type Sitting = Vec<(usize, f64)>;
 
-/// Makes bodies of races and discs, and leaves that of the shaft standing with nothing joined to it.
+/// Makes bodies of races and discs; the shaft's body remains without attachments.
 fn take_sitting(
     scene: &AssemblyScene,
     assembly: &mut Assembly,
@@ -133,7 +134,7 @@ fn take_sitting(
         if on != index {
             continue;
         }
-        // A disc where a race sits is the race; else it is a ring of its sizes.
+        // A disc at the position of a race is merged with the race; otherwise it is a ring of its sizes.
         let here = |disc: &&mut Option<(&BeamDisc, f64)>| {
             disc.is_some_and(|(_, place)| (place - at).abs() <= near)
         };
@@ -160,7 +161,7 @@ fn inertia_of(disc: &BeamDisc) -> Inertia {
     Inertia { mass, axial, transverse }
 }
 
-/// Where something is along X, m.
+/// Positions along X, m.
 fn places_of(beam: &SceneBeam, sitting: &Sitting) -> Vec<f64> {
     let sitting = sitting.iter().map(|(_, at)| *at);
     let loads = beam.loads.iter().map(|(at, _)| *at);
@@ -169,7 +170,7 @@ fn places_of(beam: &SceneBeam, sitting: &Sitting) -> Vec<f64> {
     sitting.chain(loads).chain(unbalances).chain(watched).collect()
 }
 
-/// Outer diameter at a place along X, m: of the thinner segment where it steps.
+/// Outer diameter at a position along X, m: of the thinner segment at a step.
 fn diameter_at(beam: &SceneBeam, at: f64) -> f64 {
     let near = SAME * beam.beam.length();
     let mut end = beam.start;
@@ -184,8 +185,8 @@ fn diameter_at(beam: &SceneBeam, at: f64) -> f64 {
     here
 }
 
-/// Springs that hold a race or a disc to the section at its place: those against turns are those against shifts at an arm of the
-/// shaft's diameter.
+/// Springs between a race or a disc and the section at its position; those against rotation are those against
+/// displacement at an arm of the shaft's diameter.
 fn joint_at(section: RotorSection, body: usize, springs: RaceJoint, diameter: f64) -> Joint {
     let turn = diameter * diameter;
     let along = |of: f64| [of, of, of, of * turn, of * turn, of * turn];
@@ -194,7 +195,7 @@ fn joint_at(section: RotorSection, body: usize, springs: RaceJoint, diameter: f6
     Joint { body, section, law }
 }
 
-/// What pulls at a section over time, as a load for each direction.
+/// Forces on a section over time, as a load for each direction.
 fn pulls<'l>(
     section: &'l RotorSection,
     force: &'l [Profile; 3],

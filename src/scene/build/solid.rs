@@ -1,4 +1,4 @@
-//! From a scene and its mesh to what the solver takes: sets become nodes, loads become forces.
+//! From a scene and its mesh to the inputs of the solver: sets become nodes, loads become forces.
 
 use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
 use crate::kinematics::vec3::Vec3;
@@ -18,7 +18,7 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
-/// What of a scene does not fit its mesh; `index` counts the tables of a list from 0.
+/// Contradictions of a scene and its mesh; `index` counts the tables of a list from 0.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolidSetupError {
     #[error(transparent)]
@@ -32,7 +32,7 @@ pub enum SolidSetupError {
     )]
     FourNodes,
     #[error(
-        "solid.harmonic.set: \"{set}\" is not held along {axis}, and only what is held or moved has a \
+        "solid.harmonic.set: \"{set}\" is not fixed along {axis}, and only what is fixed or moved has a \
          stiffness; [[solid.fixed]] has: {}",
         list(known)
     )]
@@ -43,7 +43,7 @@ pub enum SolidSetupError {
     )]
     VibratesTwoWays { set: String, other: String, axis: &'static str },
     #[error(
-        "solid.harmonic.axis: no set but \"{set}\" is held along {axis}, so that moving it meets no stiffness. Hint: hold \
+        "solid.harmonic.axis: no set but \"{set}\" is fixed along {axis}, so that its motion meets no stiffness. Hint: fix \
          another one, or ask along another axis"
     )]
     VibratesFreely { set: String, axis: &'static str },
@@ -70,25 +70,25 @@ pub enum SolidSetupError {
     )]
     HeldTwice { index: usize, first: String, second: String, axis: &'static str, at: Vec3 },
     #[error(
-        "solid.load.set: set \"{set}\" is held along {along} where it is loaded: the support takes all of the \
-         load, and the body none. Load another set, or leave that axis out of [[solid.fixed]]"
+        "solid.load.set: set \"{set}\" is fixed along {along} where it is loaded: the support carries all of the \
+          load, and the body none. Load another set, or leave that axis out of [[solid.fixed]]"
     )]
     LoadOnSupport { index: usize, set: String, along: String },
     #[error(
-        "solid.probe.at: {:.4} mm from there is the nearest node ({}), farther than the longest edge of the \
+         "solid.probe.at: the nearest node is {:.4} mm away ({}), farther than the longest edge of the \
          mesh, {:.4} mm: the place is outside the body. Hint: check the place, its unit and the mesh's; or \
          give the probe a `set`",
         1e3 * *.distance, place(nearest), 1e3 * *.edge
     )]
     FarProbe { index: usize, distance: f64, nearest: Vec3, edge: f64 },
     #[error(
-        "solid.probe.name: a name of {length} letters is too long for the names of files, which take \
+        "solid.probe.name: a name of {length} letters is too long for a file name, which takes \
          {LONGEST_NAME}; give the probe a shorter `name`"
     )]
     LongName { index: usize, length: usize },
     #[error(
-        "solid.fixed.{axis}: the inner sleeve goes {:.4} mm across at t = {time} s, against the outer one, and the rubber \
-         between them is {:.4} mm thick: sleeves would pass through each other. Hint: ask for less, and check the unit",
+         "solid.fixed.{axis}: the inner sleeve moves {:.4} mm across at t = {time} s, relative to the outer one, and the rubber \
+          between them is {:.4} mm thick: sleeves would pass through each other. Hint: prescribe less, and check the unit",
         1e3 * *.across, 1e3 * *.wall
     )]
     ThroughSleeve { index: usize, axis: &'static str, across: f64, wall: f64, time: f64 },
@@ -141,7 +141,7 @@ fn place(at: &Vec3) -> String {
     format!("at {:.6}, {:.6}, {:.6} m", at[0], at[1], at[2])
 }
 
-/// Nodes under one name: mean displacements and sums of forces are taken over them.
+/// Named nodes: mean displacements and sums of forces are taken over them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedNodes {
     /// Letters, digits, `_`, `-` and `.` only, unlike any other of its kind.
@@ -149,7 +149,7 @@ pub struct NamedNodes {
     pub nodes: Vec<u32>,
 }
 
-/// Components held under the name of one set. A component of two sets belongs to the first.
+/// Components fixed by one set. A component of two sets belongs to the first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Support {
     pub name: String,
@@ -158,7 +158,7 @@ pub struct Support {
 }
 
 impl Support {
-    /// The axes along which it holds something, ascending.
+    /// Axes of its components, ascending.
     pub fn axes(&self) -> Vec<usize> {
         (0..3).filter(|axis| self.components.iter().any(|(_, held)| held == axis)).collect()
     }
@@ -173,7 +173,7 @@ impl Support {
     }
 }
 
-/// A solid ready to be solved, and what is to be written of it.
+/// A solid ready to be solved, and its outputs.
 #[derive(Clone, Debug)]
 pub struct SolidSetup {
     pub problem: SolidProblem,
@@ -183,21 +183,21 @@ pub struct SolidSetup {
     pub probes: Vec<NamedNodes>,
     /// Supports; their reactions are written.
     pub supports: Vec<Support>,
-    /// What is no error and perhaps not meant.
+    /// Notes on valid but unusual input.
     pub notes: Vec<String>,
 }
 
-/// Bytes of a probe's name: file systems take 255 with what is put before and behind it.
+/// Longest name of a probe, bytes: file systems take 255 with prefix and extension.
 const LONGEST_NAME: usize = 120;
-/// Part of a load on held components above which it gets a word: the edge of a loaded face that is held
-/// at its end has less on meshes of ten cells or more.
+/// Fraction of a load on fixed components that is worth a note: the edge of a loaded face that is fixed at its end has
+/// less on meshes of ten cells or more.
 const WORTH_A_WORD: f64 = 0.2;
-/// Part of the longest edge within which a probe's place counts as its node's.
+/// Distance, as a fraction of the longest edge, within which a probe's position is its node's.
 const ON_A_NODE: f64 = 0.01;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What acts on a solid from outside, and where it is looked at.
+/// Supports, loads and probes of a solid.
 pub struct Outside {
     pub prescribed: Vec<Prescribed>,
     pub supports: Vec<Support>,
@@ -207,7 +207,8 @@ pub struct Outside {
 }
 
 /// # Errors
-/// A set that is not there or does not fit its use, supports that contradict each other.
+///
+/// A set that is missing or does not fit its use; supports that contradict each other.
 pub fn outside(scene: &SolidScene, built: &BuiltMesh) -> Result<Outside, SolidSetupError> {
     let mesh = &built.mesh;
     let (prescribed, supports) = supports(scene, mesh)?;
@@ -222,7 +223,8 @@ pub fn outside(scene: &SolidScene, built: &BuiltMesh) -> Result<Outside, SolidSe
 }
 
 /// # Errors
-/// As [`outside`]; a material of no solid, or one that a deck contradicts.
+///
+/// Those of [`outside`]; an invalid material, or one that contradicts a deck.
 pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidSetupError> {
     let mesh = &built.mesh;
     let Law::LinearElastic { youngs_modulus, poisson_ratio } = scene.law else {
@@ -282,7 +284,7 @@ fn nodes_of_set(
 
 type Supports = (Vec<Prescribed>, Vec<Support>);
 
-/// Held components. A node of two sets may be held by both if they move it alike.
+/// Fixed components. Two sets may fix one node if their motions are equal.
 fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupError> {
     let mut owner: BTreeMap<(u32, usize), (&str, &Profile)> = BTreeMap::new();
     let mut named: Vec<Support> = Vec::new();
@@ -310,7 +312,7 @@ fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupEr
                 }
             }
         }
-        // Two entries for one set, an axis each, are one support.
+        // Two entries for one set, one axis each, are one support.
         let name = column_name(&held.set);
         match named.iter_mut().find(|other| other.name == name) {
             Some(support) => support.components.extend(components),
@@ -364,7 +366,7 @@ fn set_loads(
     }
 }
 
-/// Part of a force that each node of a set takes; they sum to one.
+/// Fraction of a force on each node of a set; the sum is one.
 fn shares(mesh: &TetMesh, index: usize, set: &str) -> Result<Vec<(u32, f64)>, SolidSetupError> {
     let faces: &[Face] = mesh.surface_sets.get(set).map_or(&[], Vec::as_slice);
     if faces.is_empty() {
@@ -378,7 +380,7 @@ fn shares(mesh: &TetMesh, index: usize, set: &str) -> Result<Vec<(u32, f64)>, So
     Ok(carrying.map(|(node, area)| (node, area / total)).collect())
 }
 
-/// A load that a support takes at once does nothing: whole it is an error, a large part gets a note.
+/// Checks loads on supports: all of a load is an error, a large part gets a note.
 fn on_supports(
     index: usize,
     set: &str,
@@ -408,13 +410,13 @@ fn on_supports(
     let part = 100.0 * on_held / sum;
     Ok((on_held > WORTH_A_WORD * sum).then(|| {
         format!(
-            "{part:.0} % of the load on set \"{set}\" is on nodes that are held along {along}: the support \
-             takes it at once"
+             "{part:.0} % of the load on set \"{set}\" is on nodes that are fixed along {along}: the support \
+              carries it directly"
         )
     }))
 }
 
-/// Nodes of the probes; places next to no node get a note, those outside the mesh are errors.
+/// Nodes of the probes; positions away from nodes get a note, those outside the mesh are errors.
 fn probes(
     scene: &SolidScene,
     mesh: &TetMesh,
@@ -438,7 +440,7 @@ fn probes(
                 }
                 if distance > ON_A_NODE * edge {
                     notes.push(format!(
-                        "probe \"{}\" is that of the nearest node, {} ({:.4} mm away)",
+                        "probe \"{}\" is at the nearest node, {} ({:.4} mm away)",
                         probe.name,
                         place(nearest),
                         1e3 * distance
@@ -459,7 +461,7 @@ fn probes(
     Ok(probes)
 }
 
-/// A name that can head a column of a table.
+/// A valid name of a table column.
 fn column_name(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
     let name: String = name.trim().chars().map(plain).collect();

@@ -1,4 +1,4 @@
-//! The mesh that a scene asks for: read or made, repaired as asked, checked, with its sets.
+//! The mesh of a scene: read or made, repaired as requested, checked, with its sets.
 
 use crate::mesh::check::{Faults, Limits, check};
 use crate::mesh::generate::{Solid, bar, bushing, contact_block, ring, shaft};
@@ -21,19 +21,19 @@ use crate::solids::labels::Labels;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// A mesh that can be solved on, and how it came about.
+/// A valid mesh, and its origin.
 #[derive(Clone, Debug)]
 pub struct BuiltMesh {
     pub mesh: TetMesh,
-    /// What messages call its elements and nodes: as the file does.
+    /// Numbers of elements and nodes in messages, as in the file.
     pub labels: Labels,
     pub quality: Quality,
     pub repaired: Repaired,
-    /// Mid-side nodes that had to stay off a curved surface.
+    /// Mid-side nodes that could not be moved onto a curved surface.
     pub pulled_back: usize,
-    /// What a person should know about the reading.
+    /// Notes of the reading.
     pub notes: Vec<String>,
-    /// Of an input deck; a scene names the one that is used.
+    /// Materials of an input deck, for comparison with the scene's.
     pub materials: Vec<DeckMaterial>,
 }
 
@@ -50,11 +50,11 @@ pub enum SolidMeshError {
     #[error("{key}: {source}")]
     Made { key: String, source: MeshError },
     #[error(
-        "solid.mesh: these dimensions and cells do not make a sound mesh, change them: {faults}"
+        "solid.mesh: these dimensions and cells do not make a valid mesh, change them: {faults}"
     )]
     MadeFaults { faults: Faults },
     #[error(
-        "solid.mesh.order: {} has ten-node elements, from which no four-node ones are made; leave \
+         "solid.mesh.order: {} has ten-node elements, which are not converted to four-node ones; leave \
          `order` out, or save the mesh with elements of first order",
         path.display()
     )]
@@ -64,7 +64,7 @@ pub enum SolidMeshError {
     )]
     SetTwice { index: usize, name: String },
     #[error(
-        "solid.mesh.cells: {cells:.1e} cells, more than the {MOST_CELLS:.0e} that are made; take fewer"
+        "solid.mesh.cells: {cells:.1e} cells, more than the limit of {MOST_CELLS:.0e}; take fewer"
     )]
     TooFine { cells: f64 },
     #[error("solid.set: {source}")]
@@ -72,7 +72,7 @@ pub enum SolidMeshError {
 }
 
 impl SolidMeshError {
-    /// Part of the scene that it is about; nothing where the fault is inside a mesh file.
+    /// Part of the scene with the error; `None` for a fault inside a mesh file.
     pub fn about(&self) -> Option<About> {
         Some(match self {
             SolidMeshError::Read { .. }
@@ -90,7 +90,7 @@ impl SolidMeshError {
     }
 }
 
-/// Advice where there is no such file.
+/// Advice for a missing file.
 fn where_it_is(path: &Path, source: &InputError) -> String {
     match std::path::absolute(path) {
         Ok(whole) if source.is_missing() => format!(
@@ -101,28 +101,29 @@ fn where_it_is(path: &Path, source: &InputError) -> String {
     }
 }
 
-/// Part of the mesh's size within which nodes lie on the surface of a set.
+/// Tolerance of the nodes on the surface of a set, as a fraction of the mesh's size.
 pub(crate) const ON_SURFACE: f64 = 1e-6;
 
-/// Hexahedra that a generator may make, six tetrahedra each: some gigabytes.
+/// Largest number of hexahedra of a generator, six tetrahedra each: some gigabytes.
 const MOST_CELLS: f64 = 1e7;
 
-/// What results on a quarter of a bushing are of.
+/// Note for results on a quarter of a bushing.
 const QUARTER: &str = "the mesh is a quarter of the bushing: forces, stiffness and energies of the whole are four times \
                        those of the results";
 
 /// Reads or makes the mesh.
 ///
 /// # Errors
-/// A file that cannot be read, a mesh with a fault that no repair was asked for, dimensions that do
-/// not fit, a set that matches nothing.
+///
+/// A file that cannot be read, a mesh with a fault without a requested repair, invalid dimensions, an empty set.
 pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
     build_around(request, None)
 }
 
-/// The same for a housing: where a file's elements are raised to ten nodes, the bore stays round.
+/// The same for a housing: if a file's elements are raised to ten nodes, the bore stays round.
 ///
 /// # Errors
+///
 /// Those of [`build`].
 pub fn build_housing(scene: &HousedScene) -> Result<BuiltMesh, SolidMeshError> {
     build_around(&scene.solid.mesh, Some(&BorePlace::of(scene)))
@@ -168,7 +169,7 @@ fn build_around(
             })?;
             let (mesh, pulled_back, bent) = from_file(mesh, request, bore, path)?;
             notes.extend(bent);
-            // Nodes put on edges come last, and the file has none of them.
+            // Mid-side nodes come last, and the file has none of them.
             labels.nodes.resize(mesh.nodes.len(), None);
             (mesh, pulled_back)
         }
@@ -189,8 +190,8 @@ fn build_around(
             let (mut mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
             if pulled_back > 0 {
                 notes.push(format!(
-                    "{pulled_back} mid-side nodes stay off their curved surfaces, where elements that are thinner than the arc of a \
-                     cell is high would fold: the body is a polygon there; take more cells around, or fewer through the wall"
+                     "{pulled_back} mid-side nodes are not on their curved surfaces, because elements thinner than the sagitta of a \
+                      cell would fold: the body is a polygon there; take more cells around, or fewer through the wall"
                 ));
             }
             if request.is_quarter() {
@@ -220,14 +221,14 @@ fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {
     SolidMeshError::Mesh { path: path.to_path_buf(), source }
 }
 
-/// Faults by the numbers that messages have for elements and nodes.
+/// Faults with the file's numbers of elements and nodes.
 fn named(faults: Faults, labels: &Labels) -> Faults {
     let element = |index: u64| labels.element(index as usize);
     let node = |index: u64| labels.node(index as usize).unwrap_or(index + 1);
     Faults(faults.0.into_iter().map(|fault| fault.renumbered(element, node)).collect())
 }
 
-/// A repair that fails, with the number that the file has for the element.
+/// Error of a repair, with the file's number of the element.
 fn named_in_file(error: MeshError, labels: &Labels) -> MeshError {
     match error {
         MeshError::Collapsed { element, tolerance } => {
@@ -237,15 +238,15 @@ fn named_in_file(error: MeshError, labels: &Labels) -> MeshError {
     }
 }
 
-/// The file's numbers of the nodes that repairs have left. They drop nodes, and neither move nor
-/// reorder any: those that are left are found one after the other by their places.
+/// The file's numbers of the nodes left by repairs, which drop nodes without moving or reordering any: found one after
+/// the other by their positions.
 fn labels_of_nodes(mesh: &TetMesh, places: &[[f64; 3]], numbers: &[u64]) -> Vec<Option<u64>> {
     let mut read = places.iter().zip(numbers);
     let next = |place: &[f64; 3]| read.find(|(at, _)| *at == place).map(|(_, number)| *number);
     mesh.nodes.iter().map(next).collect()
 }
 
-/// A file's mesh in the order that is asked for, mid-side nodes off curved surfaces, and a note.
+/// A file's mesh in the requested order, mid-side nodes off curved surfaces, and a note.
 fn from_file(
     mesh: TetMesh,
     request: &MeshRequest,
@@ -276,7 +277,7 @@ fn of_order(solid: Solid, order: Option<Order>) -> Result<(TetMesh, usize), Mesh
     Ok((elevated.mesh, elevated.pulled_back))
 }
 
-/// About how many hexahedra a generator makes.
+/// Approximate number of hexahedra of a generator.
 fn cells(source: &MeshSource) -> f64 {
     let product = |counts: &[usize]| counts.iter().map(|count| *count as f64).product::<f64>();
     match source {
@@ -315,7 +316,7 @@ fn generate(source: &MeshSource) -> Result<Solid, MeshError> {
     }
 }
 
-/// Sets by geometry, beside those the mesh has.
+/// Adds sets by geometry to those of the mesh.
 fn with_sets(mut mesh: TetMesh, request: &MeshRequest) -> Result<TetMesh, SolidMeshError> {
     let boundary = if request.sets.is_empty() { Vec::new() } else { surface(&mesh) };
     for (index, set) in request.sets.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! From a resolved scene to the static problem it describes.
+//! From a resolved scene to its static problem.
 
 use crate::assembly::lists::Assembly;
 use crate::assembly::static_lists::StaticAssembly;
@@ -15,7 +15,8 @@ use std::f64::consts::PI;
 /// The static problem of a scene.
 ///
 /// # Errors
-/// Radii from which no contact can be built (a ball as large as its groove or race).
+///
+/// Radii without a valid contact (a ball as large as its groove or race).
 pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
     let geometry = scene.geometry;
     let side = |side, race| contact(scene.hertz, side, &geometry, &scene.ball_material, race);
@@ -37,8 +38,8 @@ pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
     })
 }
 
-/// The lists of a scene in equilibrium at t = 0: as a motion would start, without the centrifugal force of the balls unless
-/// it is asked for.
+/// The lists of a scene in equilibrium at t = 0, as at the start of a motion, without the centrifugal force of the
+/// balls unless requested.
 pub fn still_lists(scene: &AssemblyScene, assembly: &Assembly) -> StaticAssembly<'static> {
     let mut still = static_assembly(assembly, 0.0, &[]);
     for (bearing, placed) in still.bearings.iter_mut().zip(&scene.bearings) {
@@ -48,7 +49,7 @@ pub fn still_lists(scene: &AssemblyScene, assembly: &Assembly) -> StaticAssembly
     still
 }
 
-/// Of one ball, kg.
+/// Mass of one ball, kg.
 pub fn ball_mass(scene: &Scene) -> f64 {
     let volume = 4.0 / 3.0 * PI * scene.geometry.ball_radius.powi(3);
     scene.ball_material.density * volume

@@ -1,4 +1,4 @@
-//! A quarter of a bushing stands for the whole where its planes of symmetry stay planes and nothing pushes across them.
+//! A quarter of a bushing represents the whole if its planes of symmetry stay planes without forces across them.
 
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::solid_scene::Held;
@@ -6,19 +6,20 @@ use crate::scene::text::document::Document;
 use crate::scene::text::items::ItemRef;
 use crate::scene::text::value::Checked;
 
-/// Axes across the planes, and the sets that lie in these.
+/// Axes across the planes, and their sets.
 const PLANES: [(&str, &str); 2] = [("x", "x_low"), ("y", "y_low")];
 const ADVICE: &str = "leave it out, or write part = \"whole\"";
 
 /// # Errors
-/// A plane that is not held, or what has no mirror image on its other side.
+///
+/// A plane that is not fixed, or a load without a mirror image.
 pub(crate) fn check(document: &Document, held: &[Held]) -> Result<(), SceneError> {
     for (axis, (name, set)) in PLANES.into_iter().enumerate() {
         if held.iter().any(|of| of.set == set && of.motion[axis].is_some()) {
             continue;
         }
         let reason = format!(
-            "a quarter stands for the whole only where its planes of symmetry are held, and set {set:?} is not held along {name}"
+            "a quarter represents the whole only if its planes of symmetry are fixed, and set {set:?} is not fixed along {name}"
         );
         let advice = format!(
             "add [[solid.fixed]] with set = {set:?}, {name} = true, or write part = \"whole\""
@@ -33,7 +34,7 @@ pub(crate) fn check(document: &Document, held: &[Held]) -> Result<(), SceneError
         }
     }
     if matches!(document.value("solid.spin"), Some(Checked::Number(spin)) if *spin != 0.0) {
-        let reason = "a quarter is not turned";
+        let reason = "a quarter cannot rotate";
         return Err(document.refused("solid.spin", reason, ADVICE));
     }
     document.items("solid.load").try_for_each(load)
@@ -55,6 +56,6 @@ fn load(item: ItemRef) -> Result<(), SceneError> {
 
 fn across(axis: &str) -> String {
     format!(
-        "along {axis} it goes across a plane of symmetry of the quarter, whose other side would have to go the other way"
+        "along {axis} it crosses a plane of symmetry of the quarter, whose mirror image would have to move the other way"
     )
 }

@@ -1,4 +1,4 @@
-//! From tables with names to bearings on bodies: what sits where, and what joins what.
+//! From named tables to bearings on bodies: carriers and connections.
 
 use crate::assembly::loads::DrivenBody;
 use crate::ch2_housing::bearing::inertia::Inertia;
@@ -26,7 +26,7 @@ use crate::scene::text::document::Document;
 use crate::scene::text::scopes::no_such;
 use crate::scene::text::value::Checked;
 
-/// Whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
+/// Returns whether a scene is more than a bearing alone, a solid alone, or one bearing in its housing.
 pub(crate) fn is_assembly(document: &Document) -> bool {
     const OF_SEVERAL: [&str; 2] = ["body", "spring"];
     const PLACES: [&str; 5] = ["inner_on", "inner_at", "outer_on", "outer_at", "reversed"];
@@ -87,7 +87,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     Ok(scene)
 }
 
-/// A race without a foundation may have springs that hold it: its default says which.
+/// Names the springs that support a race without a foundation in its default.
 fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
     for (index, placed) in bearings.iter_mut().enumerate() {
         let of_race = |end: &SpringEnd| end.at == SpringAt::Race { bearing: index, side: 1 };
@@ -103,9 +103,9 @@ fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
     }
 }
 
-/// What bodies cannot have where equilibria follow one another.
+/// Refuses loads that need inertia in a quasi-static sequence.
 fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
-    const UNBALANCE: &str = "an unbalance is inertia";
+    const UNBALANCE: &str = "an unbalance needs inertia";
     const WHAT: [(&str, &str); 2] = [
         ("body.torque", "without inertia no speed follows from a torque"),
         ("body.unbalance", UNBALANCE),
@@ -126,7 +126,7 @@ fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), Scen
     Ok(())
 }
 
-/// Names that nothing goes by, that two things go by, and tables that need one.
+/// Refuses names without a table, names used twice, and tables without a name.
 fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
     for table in ["body", "spring"] {
         if document.names(table).next().is_none() && document.first_below(table).is_some() {
@@ -149,7 +149,7 @@ fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
                 document.names(table).find(|n| document.names(other).any(|o| o == *n))
             {
                 let reason = format!("a {other} has this name as well");
-                let advice = "names stand before columns: give each thing its own";
+                let advice = "names are prefixes of columns: give each thing its own";
                 return Err(document.error_of_name(table, twice, Problem::refused(reason, advice)));
             }
         }
@@ -192,7 +192,7 @@ fn bearing(
     };
     let (carriers, on) = carriers;
     if on[0].is_some() && on[0] == on[1] {
-        let reason = "both races would sit on this body";
+        let reason = "both races would be on this body";
         let advice = "write outer_on = \"outer_race\", or another body";
         return Err(scoped.refused("bearing.outer_on", reason, advice));
     }
@@ -201,7 +201,7 @@ fn bearing(
         let of_race =
             |path: &str| path.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'));
         if let Some(key) = scoped.given_keys().map(|key| key.path).find(|path| of_race(path)) {
-            let reason = format!("this race sits on body.{}", bodies[body]);
+            let reason = format!("this race is on body.{}", bodies[body]);
             let advice = format!("write loads and motions in [body.{}]", bodies[body]);
             return Err(scoped.refused(key, reason, advice));
         }
@@ -219,7 +219,7 @@ fn bearing(
         }
     };
     if let (Some(body), Some(_)) = (on[1], &housing) {
-        let reason = format!("the outer race sits on body.{}, not in a bore", bodies[body]);
+        let reason = format!("the outer race is on body.{}, not in a bore", bodies[body]);
         let advice = "leave out outer_on, or the housing";
         return Err(scoped.refused("bearing.outer_on", reason, advice));
     }
@@ -239,7 +239,7 @@ fn bearing(
     Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene, housing })
 }
 
-/// A solid has no use where there is no housing; a common one may be those of the other bearings.
+/// Refuses a solid without a housing; a common solid may be those of the other bearings.
 fn refuse_no_housing(
     document: &Document,
     scoped: &Document,
@@ -256,7 +256,7 @@ fn refuse_no_housing(
     Err(document.error_of_name("solid", own, Problem::refused(reason, advice)))
 }
 
-/// Balls go round as the body turns that carries the inner race: it must say how fast where their centrifugal force counts.
+/// Requires a speed of the body under the inner race for the centrifugal force of the balls.
 fn require_speed(bearing: &Document, body: &Document) -> Result<(), SceneError> {
     let counts = bearing.value("ball_forces.centrifugal");
     if !matches!(counts, Some(Checked::Boolean(true))) || bearing.is_given("inner_race.speed") {
@@ -267,7 +267,7 @@ fn require_speed(bearing: &Document, body: &Document) -> Result<(), SceneError> 
     Err(body.error_here("body.speed", Problem::Missing { because, example }))
 }
 
-/// The body that carries a race; `None` for a race that is one itself.
+/// The body of a race; `None` for a race that is a body of its own.
 fn carrier(
     reader: &Reader,
     side: usize,
@@ -297,7 +297,7 @@ fn carrier(
     }
 }
 
-/// Defaults of a race that is part of another body say nothing.
+/// Drops defaults of a race that is part of another body.
 fn forget_race(scene: &mut Scene, race: &str) {
     let of_race = |used: &DefaultUsed| {
         used.key == race || used.key.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'))
@@ -306,7 +306,7 @@ fn forget_race(scene: &mut Scene, race: &str) {
     scene.dynamics.defaults_used.retain(|used| !of_race(used));
 }
 
-/// Defaults that more than one bearing has are told once; others say whose they are.
+/// Names defaults once if several bearings share them, and with the bearing's name otherwise.
 fn name_defaults(
     scene: &mut Scene,
     scoped: &Document,
@@ -328,7 +328,7 @@ fn name_defaults(
     }
 }
 
-/// Housings that are solved in different ways.
+/// Refuses housings with different methods.
 fn refuse_mixed_methods(document: &Document, bearings: &[PlacedBearing]) -> Result<(), SceneError> {
     let method = |placed: &PlacedBearing| placed.housing.as_ref().map(|h| h.settings.method);
     let first = bearings.iter().find_map(method);
@@ -339,7 +339,7 @@ fn refuse_mixed_methods(document: &Document, bearings: &[PlacedBearing]) -> Resu
     Err(document.scoped(name).error("housing.method", Problem::refused(reason, advice)))
 }
 
-/// Bodies whose columns would be called as those of a race or a cage.
+/// Refuses bodies with the column names of a race or a cage.
 fn refuse_shared_columns(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
     for body in &scene.bodies {
         for placed in &scene.bearings {
@@ -358,7 +358,7 @@ fn refuse_shared_columns(document: &Document, scene: &AssemblyScene) -> Result<(
     Ok(())
 }
 
-/// Bodies that nothing is joined to.
+/// Refuses bodies without a bearing or spring.
 fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), SceneError> {
     for (index, body) in scene.bodies.iter().enumerate() {
         let carries = scene

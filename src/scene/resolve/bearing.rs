@@ -1,4 +1,4 @@
-//! From the given keys to the resolved scene: defaults, and what must hold between keys.
+//! From the given keys to the resolved scene: defaults, and checks between keys.
 
 use crate::assembly::loads::Drive;
 use crate::ch2_housing::bearing::geometry::{BearingKind, Material};
@@ -25,7 +25,7 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
     resolve_bearing(document)
 }
 
-/// The bearing of a scene that may hold a solid as well.
+/// The bearing of a scene that may contain a solid as well.
 pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> {
     let mut reader = Reader::new(document);
     let kind = match reader.required_choice("bearing.kind")? {
@@ -105,7 +105,7 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
     })
 }
 
-/// Looks keys up and keeps note of the defaults used.
+/// Reads keys and records the defaults used.
 pub(crate) struct Reader<'d> {
     pub document: &'d Document,
     defaults_used: Vec<DefaultUsed>,
@@ -169,7 +169,7 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// The given word, else the default of the key table.
+    /// The given choice, else the default of the key table.
     pub fn choice(&mut self, path: &str) -> Option<&'static str> {
         self.given_choice(path).or_else(|| {
             self.note_default(path);
@@ -180,7 +180,7 @@ impl<'d> Reader<'d> {
         })
     }
 
-    /// The given word, without recourse to the default.
+    /// The given choice, without the default.
     pub fn choice_if_given(&self, path: &str) -> Option<&'static str> {
         self.given_choice(path)
     }
@@ -189,7 +189,7 @@ impl<'d> Reader<'d> {
         self.given_choice(path).ok_or_else(|| self.missing(path, ""))
     }
 
-    /// Notes that the key table's default of `path` is in use.
+    /// Records that the key table's default of `path` is in use.
     pub fn note_default(&mut self, path: &str) {
         if let Some((_, key)) = keys::find(path)
             && let Need::Default { value, reason } = key.need
@@ -234,7 +234,7 @@ impl<'d> Reader<'d> {
         Material::STEEL
     }
 
-    /// Load or given motion of the five coordinates of a race.
+    /// Load or prescribed motion of the five coordinates of a race.
     pub fn drives(&mut self, race: &str, ball_radius: f64) -> Result<[Drive; 5], SceneError> {
         let mut drives = [const { Drive::Load(Profile::ZERO) }; 5];
         for (drive, name) in drives.iter_mut().zip(COORDINATE_NAMES) {
@@ -257,7 +257,7 @@ impl<'d> Reader<'d> {
         Ok(drives)
     }
 
-    /// Where the outer race is, or starts.
+    /// Position of the outer race, at the start if it moves.
     fn outer_race(&mut self, ball_radius: f64) -> Result<[f64; 5], SceneError> {
         let mut position = [0.0; 5];
         for (value, name) in position.iter_mut().zip(COORDINATE_NAMES) {
@@ -273,7 +273,7 @@ impl<'d> Reader<'d> {
         Ok(position)
     }
 
-    /// Tilts have their range in the key table; displacements are measured by the ball.
+    /// Tilts have their range in the key table; the limit of displacements is the ball radius.
     fn limit_displacement(&self, path: &str, value: f64, ball: f64) -> Result<(), SceneError> {
         if path.contains("tilt") || value.abs() <= ball {
             return Ok(());

@@ -1,4 +1,4 @@
-//! From the keys of a bonded bushing between two bodies to the springs that it is.
+//! From the keys of a bonded bushing between two bodies to its springs.
 
 use crate::ch2_housing::elastomer::eight_chain::ChainPull;
 use crate::members::connection::SpringDashpot;
@@ -13,9 +13,9 @@ use std::f64::consts::TAU;
 use std::sync::{Mutex, PoisonError};
 
 const TABLE: &str = "spring.bushing";
-/// Cells crowd at sleeves and ends by this power.
+/// Power of the grading of cells towards sleeves and ends.
 const GRADING: f64 = 2.0;
-/// Beyond them reading a scene would take minutes.
+/// Limit of cells: reading a scene takes minutes beyond.
 const MOST_CELLS: usize = 1500;
 
 /// The bushing of a spring, if it is one, and its law.
@@ -28,7 +28,8 @@ pub(crate) fn bushing(
     }
     for part in ["spring.stiffness", "spring.maxwell"] {
         if let Some(given) = document.first_below(part) {
-            let reason = "the spring is a bushing, which says how stiff it is";
+            let reason =
+                "the spring is a bushing, whose stiffness follows from its dimensions and rubber";
             return Err(document.refused(given, reason, "leave this or [spring.NAME.bushing] out"));
         }
     }
@@ -48,7 +49,11 @@ pub(crate) fn bushing(
         let path = format!("{TABLE}.cells.{key}");
         reader.given_number(&path).map_or_else(
             || {
-                reader.note(&path, &usual.to_string(), "as long and thick as the bushing is");
+                reader.note(
+                    &path,
+                    &usual.to_string(),
+                    "from the length and thickness of the bushing",
+                );
                 usual
             },
             |count| count as usize,
@@ -94,8 +99,9 @@ pub(crate) fn bushing(
     Ok(Some((of, spring.law)))
 }
 
-/// Cells across the wall and along half of the length, where nothing is given: about as many of them, where they tell most. All
-/// stiffnesses are within 1.1 % of an oracle's (case `bushing_sleeve_motions`); 4 by 4 of thin sleeves and flat discs are 3 to 5.5 % off.
+/// Default cells across the wall and along half of the length, in number about constant. All stiffnesses are within 1.1
+/// % of an oracle's (case `bushing_sleeve_motions`); 4 by 4 give an error of 3 to 5.5 % for thin sleeves and flat
+/// discs.
 fn usual_cells(thickness: f64, length: f64) -> [usize; 2] {
     match 0.5 * length / thickness {
         slender if slender >= 12.0 => [2, 12],
@@ -105,7 +111,7 @@ fn usual_cells(thickness: f64, length: f64) -> [usize; 2] {
     }
 }
 
-/// Keys that not every method uses, and which do.
+/// Keys of some methods, and these methods.
 const OF_METHODS: &[(&str, &[&str])] = &[
     ("spring.bushing.density", &["explicit", "implicit"]),
     ("spring.bushing.window_phase", &["explicit", "implicit"]),
@@ -113,17 +119,17 @@ const OF_METHODS: &[(&str, &[&str])] = &[
     ("spring.bushing.step", &["implicit"]),
 ];
 
-/// Bushings that were fitted last: a sweep reads one scene many times, and a fit takes a second.
+/// The last fitted bushings: a sweep reads one scene many times, and a fit takes a second.
 static FITTED: Mutex<Vec<(BushingOfSpring, BushingSpring)>> = Mutex::new(Vec::new());
 const KEPT: usize = 8;
 
-/// The spring of a bushing whose `misses` are zero; else the key to blame, and why.
+/// The spring of a bushing whose `misses` are zero; otherwise the invalid key, and the reason.
 fn fitted(of: &BushingOfSpring) -> Result<BushingSpring, (&'static str, String)> {
     let kept = || FITTED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, spring)) = kept().iter().find(|(other, _)| other == of) {
         return Ok(spring.clone());
     }
-    // Nobody waits for it meanwhile: threads of a sweep have bushings of their own.
+    // The lock is free meanwhile: threads of a sweep have different bushings.
     let solid = mesh_of(&of.body, &of.mesh).and_then(|solid| solid.quadratic());
     let solid = solid.map_err(|error| ("spring.bushing.cells", error.to_string()))?;
     let found = bushing_spring(&solid.mesh, Part::Quarter, &of.material, TAU * of.fastest);

@@ -1,4 +1,4 @@
-//! The cage: its sizes, and the rigid body it makes in a run.
+//! The cage: its sizes, and its rigid body in a run.
 
 use crate::assembly::loads::CageBody;
 use crate::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
@@ -40,7 +40,7 @@ pub(crate) fn cage(
         return Err(reader.document.error("bearing.cage.pocket_radius", problem));
     }
     if let Some(pocket) = cage.pocket_radius {
-        // Half of what there is from pocket to pocket where their centres are.
+        // Half the distance between pockets at the radius of their centres.
         let pitch = reader.given_number("bearing.cage.pocket_pitch_radius");
         let room =
             pitch.unwrap_or(geometry.pitch_radius) * libm::sin(PI / geometry.ball_count as f64);
@@ -64,7 +64,7 @@ pub(crate) fn cage(
             relation: "less than",
             other_name: "the cage's outer radius",
             other: outer,
-            advice: "were the two exchanged?",
+            advice: "are the two exchanged?",
         };
         return Err(reader.document.error("bearing.cage.inner_radius", problem));
     }
@@ -72,8 +72,8 @@ pub(crate) fn cage(
     Ok(Some(cage))
 }
 
-/// The cage lies between the races: inside the shoulders where they are given, else inside the
-/// groove bottoms, which no cage can reach; a race that guides it lies its clearance farther.
+/// Checks that the cage is between the races: inside the shoulders if they are given, else inside the groove bottoms; a
+/// guiding race is farther by its clearance.
 fn hold_against_races(
     reader: &Reader,
     cage: &Cage,
@@ -104,7 +104,7 @@ fn hold_against_races(
     for (key, radius, outward, shoulder, bottom, guide, [relation, of_shoulder, of_bottom]) in sides
     {
         let Some(radius) = radius else { continue };
-        // A shoulder on the wrong side of the balls is a mistake of its own.
+        // A shoulder on the wrong side of the balls is reported elsewhere.
         let shoulder = shoulder.filter(|shoulder| (shoulder - pitch) * outward > 0.0);
         let (other_name, other) = match shoulder {
             Some(shoulder) => (of_shoulder, shoulder),
@@ -112,15 +112,15 @@ fn hold_against_races(
         };
         let overlaps = |value: f64, other: f64| (other - value) * outward <= 0.0;
         if overlaps(radius, other) {
-            let advice = "a cage lies between the races; check radius, not diameter, and unit";
+            let advice = "a cage is between the races; check radius, not diameter, and unit";
             let problem =
                 Problem::WrongOrder { value: radius, relation, other_name, other, advice };
             return Err(reader.document.error(key, problem));
         }
-        // The race's surface that guides it.
+        // Radius of the guiding surface of the race.
         let land = radius + outward * cage.race_clearance.unwrap_or(0.0);
         if cage.guidance == Some(guide) && overlaps(land, bottom) {
-            let advice = "this is the cage's radius and race_clearance together, where the race \
+            let advice = "this is the sum of the cage's radius and race_clearance, at which the race \
                           guides it; a race ends at its groove";
             let value = land;
             let problem = Problem::WrongOrder {
@@ -136,7 +136,7 @@ fn hold_against_races(
     Ok(())
 }
 
-/// The cage of a run, or why there is none.
+/// The cage of a run, or the reason why there is none.
 pub(crate) fn in_run(
     reader: &mut Reader,
     geometry: &BearingGeometry,
@@ -200,7 +200,7 @@ pub(crate) fn in_run(
         pocket,
         pocket_radius,
         pocket_pitch_radius: pitch.unwrap_or_else(|| {
-            let reason = "the pockets lie on the bearing's pitch circle";
+            let reason = "the pockets are on the bearing's pitch circle";
             let value = millimetres(geometry.pitch_radius);
             reader.note("bearing.cage.pocket_pitch_radius", &value, reason);
             geometry.pitch_radius
@@ -211,8 +211,7 @@ pub(crate) fn in_run(
         race_clearance: cage.race_clearance.unwrap_or(0.0),
         length,
         force: force.unwrap_or_else(|| {
-            let reason =
-                "the source's stiffness (5.8), which it has at each node of a flexible cage";
+            let reason = "the source's stiffness (5.8), there at each node of a flexible cage";
             reader.note("bearing.cage.contact.stiffness", "2e8 N/m", reason);
             CageForce::Penalty { stiffness: 2e8 }
         }),
@@ -222,8 +221,8 @@ pub(crate) fn in_run(
     Ok(CageInRun::Body(CageBody { inertia: Inertia { mass, axial, transverse }, contacts }))
 }
 
-/// Volume that one round pocket with a radial axis takes out of the ring: the integral of
-/// sqrt(R_o² - y²) - sqrt(R_i² - y²) over the pocket's circle.
+/// Volume of one round pocket with a radial axis in the ring: the integral of sqrt(R_o² - y²) - sqrt(R_i² - y²) over
+/// the pocket's circle.
 fn pocket_volume(pocket: f64, inner: f64, outer: f64) -> f64 {
     // Chebyshev quadrature of the second kind, whose weight is the circle's width at y.
     const NODES: usize = 12;
@@ -244,7 +243,7 @@ fn given_inertia(reader: &Reader) -> Result<Option<[f64; 2]>, SceneError> {
     if !keys.iter().any(|key| reader.is_given(key)) {
         return Ok(None);
     }
-    let because = " beside the other moment of inertia";
+    let because = " with the other moment of inertia";
     let axial = reader.required_number(keys[0], because)?;
     let transverse = reader.required_number(keys[1], because)?;
     check_inertia(axial, transverse).map_err(|problem| reader.document.error(keys[0], problem))?;
@@ -296,7 +295,7 @@ fn pocket_pitch(reader: &Reader, geometry: &BearingGeometry) -> Result<Option<f6
     } else {
         ("less than", "the pitch radius plus a ball radius", high)
     };
-    let advice = "leave it out, the pockets then lie on the pitch circle";
+    let advice = "leave it out; the pockets are then on the pitch circle";
     let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
     Err(reader.document.error(path, problem))
 }

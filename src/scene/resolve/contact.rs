@@ -11,7 +11,7 @@ use crate::scene::text::items::ItemRef;
 use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 
-/// Keys that belong to some laws only.
+/// Keys of some laws only.
 const TRACTION_KEYS: &[(&str, &[&str])] = &[
     ("traction.coefficient", &["constant"]),
     ("traction.regularisation_speed", &["constant"]),
@@ -22,7 +22,7 @@ const TRACTION_KEYS: &[(&str, &[&str])] = &[
 ];
 const DAMPING_KEYS: &[(&str, &[&str])] = &[("contact_damping.alpha", &["hunt-crossley"])];
 
-/// A key of another law or method than the chosen one would have no effect.
+/// Refuses keys of another law or method than the chosen one.
 pub(crate) fn refuse_strangers(
     reader: &Reader,
     (what, chosen): (&str, &str),
@@ -121,8 +121,7 @@ pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError>
     })
 }
 
-/// Friction coefficient and regularisation speed (m/s) between balls; defaults count as used where
-/// balls can meet.
+/// Friction coefficient and regularisation speed (m/s) between balls; defaults count as used if balls can meet.
 pub(crate) fn ball_friction(
     reader: &mut Reader,
     balls_meet: bool,
@@ -142,11 +141,11 @@ pub(crate) fn ball_friction(
     Ok(Some([reader.number(friction).unwrap_or(0.1), reader.number(speed).unwrap_or(0.01)]))
 }
 
-/// Depth of a dent whose scene gives none, in parts of its diameter: balls of usual bearings do not reach its bottom.
+/// Default depth of a dent, as a fraction of its diameter: balls of usual bearings do not reach its bottom.
 const USUAL_DEPTH: f64 = 0.05;
-/// Width of a shoulder in parts of the dent's diameter.
+/// Default width of a shoulder, as a fraction of the dent's diameter.
 const USUAL_WIDTH: f64 = 0.25;
-/// A table of the law has cells and intervals for dents of the size of contacts.
+/// Largest diameter over the ball radius: cells and intervals of the law's table are made for the size of contacts.
 const WIDEST: f64 = 0.5;
 
 /// Dents in the races.
@@ -176,11 +175,10 @@ fn dent(
     let widest = WIDEST * geometry.ball_radius;
     if diameter > widest {
         let reason = format!(
-            "a dent wider than {} mm, half the ball's radius, is no longer one",
+            "a dent wider than {} mm, half the ball's radius, is outside the model",
             plain(1e3 * widest)
         );
-        let advice =
-            "its law is that of a surface that is flat but for the dent; give a smaller diameter";
+        let advice = "the law is that of a surface that is flat except for the dent; give a smaller diameter";
         return Err(item.error("diameter", Problem::refused(reason, advice)));
     }
     let depth = item_number(item, "depth").unwrap_or_else(|| {

@@ -1,4 +1,4 @@
-//! What only a run needs: bodies of the races, loads that turn, steps.
+//! Part of a scene for runs: bodies of the races, rotating loads, steps.
 
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::lists::gap_in_pockets;
@@ -17,7 +17,7 @@ use crate::scene::resolve::{cage, contact};
 use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 
-/// Parts that are resolved already.
+/// Resolved parts.
 pub(crate) struct Parts<'p> {
     pub geometry: &'p BearingGeometry,
     pub dimensions: &'p Dimensions,
@@ -125,7 +125,7 @@ fn outer_race(reader: &mut Reader, parts: &Parts) -> Result<Option<DrivenBody>, 
     let foundation_stiffness = foundation(reader, "outer_race", "stiffness");
     let foundation_damping = foundation(reader, "outer_race", "damping");
     if foundation_stiffness == [0.0; 5] {
-        reader.note("outer_race.foundation", "none", "no spring holds the moving outer race");
+        reader.note("outer_race.foundation", "none", "no spring supports the moving outer race");
     }
     Ok(Some(DrivenBody {
         inertia: race_inertia(reader, parts, &OUTER)?,
@@ -136,7 +136,7 @@ fn outer_race(reader: &mut Reader, parts: &Parts) -> Result<Option<DrivenBody>, 
     }))
 }
 
-/// A race with five coordinates turns as it is told, one with six as moments turn it.
+/// Rotation of the outer race: prescribed for five coordinates, by torque for six.
 fn outer_rotation(reader: &Reader, motion: &str) -> Result<Rotation, SceneError> {
     let (own, other) = match motion {
         "5-dof" => ("outer_race.speed", "outer_race.torque"),
@@ -152,7 +152,7 @@ fn outer_rotation(reader: &Reader, motion: &str) -> Result<Rotation, SceneError>
     Ok(if motion == "5-dof" { Rotation::Speed(profile) } else { Rotation::Torque(profile) })
 }
 
-/// Keys that do nothing to a fixed race are refused, so that nobody waits for their effect.
+/// Refuses keys without effect on a fixed race.
 fn refuse_motion(reader: &Reader) -> Result<(), SceneError> {
     let mut keys = Vec::new();
     for name in COORDINATE_NAMES {
@@ -179,7 +179,7 @@ fn refuse_motion(reader: &Reader) -> Result<(), SceneError> {
     }
 }
 
-/// Where the keys of a race stand, and on which side of its groove the material lies.
+/// Keys of a race, and the side of its material.
 struct Side {
     table: &'static str,
     geometry: &'static str,
@@ -201,14 +201,14 @@ const OUTER: Side = Side {
     sign: -1.0,
 };
 
-/// Sizes that no table states, as parts of the ball diameter. Wall and length are those of
-/// Table 2.2: 3.574 mm and 20 mm with balls of 11.91 mm.
+/// Default sizes as fractions of the ball diameter. Wall and length are those of Table 2.2: 3.574 mm and 20 mm with
+/// balls of 11.91 mm.
 const WALL: f64 = 0.30;
 const LENGTH: f64 = 1.68;
 /// Common height of a deep-groove bearing's shoulders.
 const SHOULDER: f64 = 0.20;
 
-/// Given, or a ring with a groove of the race's sizes.
+/// As given, or of a ring with a groove of the race's sizes.
 fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inertia, SceneError> {
     let inner = side.sign > 0.0;
     let added =
@@ -217,7 +217,7 @@ fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inert
     let given_shoulder = shoulder(reader, parts, side, &shoulder_key)?;
     let keys = ["mass", "axial", "transverse"].map(|key| format!("{}.inertia.{key}", side.table));
     if keys.iter().any(|key| reader.is_given(key)) {
-        let because = " beside the other entries of `inertia`";
+        let because = " with the other entries of `inertia`";
         let [mass, axial, transverse] = keys.each_ref().map(|k| reader.required_number(k, because));
         let inertia = Inertia { mass: mass? + added, axial: axial?, transverse: transverse? };
         check_inertia(inertia.axial, inertia.transverse)
@@ -285,7 +285,7 @@ fn shoulder(
     let bottom = if inner { sizes.inner_race.radius } else { sizes.outer_race.radius };
     let pitch = parts.geometry.pitch_radius;
     let order = |relation, other_name, other| {
-        let advice = "a shoulder stands beside the groove, lower than the balls' centres";
+        let advice = "a shoulder is beside the groove, lower than the balls' centres";
         let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
         Err(reader.document.error(key, problem))
     };
@@ -300,7 +300,8 @@ fn shoulder(
     }
 }
 
-/// No body has I_axial > 2 I_transverse: ∫(y² + z²) ≤ ∫(x² + y²) + ∫(x² + z²). A flat disc has both the same but for rounding.
+/// No body has I_axial > 2 I_transverse: ∫(y² + z²) ≤ ∫(x² + y²) + ∫(x² + z²). Both are equal but for rounding for a
+/// flat disc.
 pub(crate) fn check_inertia(axial: f64, transverse: f64) -> Result<(), Problem> {
     match axial <= 2.0 * transverse * (1.0 + 1e-9) {
         true => Ok(()),
@@ -308,8 +309,8 @@ pub(crate) fn check_inertia(axial: f64, transverse: f64) -> Result<(), Problem> 
     }
 }
 
-/// A mass m beside the axis by r, with u = m r, has a moment of inertia m r² = u²/m of its own, which is part of the body's. A given
-/// speed asks for none, and equilibria for no inertia at all.
+/// An eccentric mass m at radius r, with u = m r, has a moment of inertia m r² = u²/m, which is part of the body's. A
+/// prescribed speed needs no moment of inertia, and an equilibrium no inertia at all.
 pub(crate) fn check_unbalance(race: &DrivenBody, unbalance: f64) -> Result<(), Problem> {
     let Inertia { mass, axial, .. } = race.inertia;
     let given = matches!(race.rotation, Rotation::Speed(_)) || mass == 0.0;
@@ -319,7 +320,7 @@ pub(crate) fn check_unbalance(race: &DrivenBody, unbalance: f64) -> Result<(), P
     }
 }
 
-/// A length as it would be written, to six digits.
+/// A length in mm, to six digits.
 pub(crate) fn millimetres(metres: f64) -> String {
     let rounded: f64 = format!("{:.5e}", metres * 1e3).parse().unwrap_or(metres * 1e3);
     format!("{} mm", plain(rounded))
@@ -345,7 +346,7 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
             }
             Stepping::Accuracy(_) => (
                 ENERGY_LIMIT_OF_CONTROL,
-                "error control watches the motion; long steps balance the work of what holds a speed roughly",
+                 "error control bounds the motion; long steps resolve the work of a prescribed speed less accurately",
             ),
         };
         reader.note("numerics.energy_limit", &plain(limit), reason);
@@ -381,19 +382,19 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
     }))
 }
 
-/// Energy that error control may lose, as a part of the energy turned over: sound runs at an accuracy of
-/// 0.01 lose up to 0.02, and one that makes energy without end comes close to 1.
+/// Energy limit with error control, as a fraction of the energy turned over: valid runs at an accuracy of 0.01 lose up
+/// to 0.02, and an unstable one comes close to 1.
 const ENERGY_LIMIT_OF_CONTROL: f64 = 0.2;
 
 struct Steps {
     integrator: Integrator,
     stepping: Stepping,
-    /// Whether the plan is to choose the integrator.
+    /// True if the plan chooses the integrator.
     by_plan: bool,
 }
 
-/// Without step and integrator error control, by the method that the plan chooses; a step, or a part of
-/// the largest stable one, is one of rk4.
+/// Without step and integrator: error control, by the method that the plan chooses. A step, or a fraction of the
+/// largest stable one, means rk4.
 fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
     let [step, fraction, accuracy] = ["step", "step_fraction", "accuracy"]
         .map(|name| reader.given_number(&format!("numerics.{name}")));
@@ -403,7 +404,7 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
         Some(_) => Some(Integrator::RungeKutta),
         None => None,
     };
-    // Windows of a housing are shorter than any step that error control would choose.
+    // Coupling steps of a housing are shorter than the steps of error control.
     let in_housing = reader.choice_if_given("housing.method") == Some("explicit");
     let by_steps = step.is_some() || fraction.is_some() || (in_housing && accuracy.is_none());
     let by_plan = given.is_none() && !by_steps;
@@ -411,13 +412,13 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
         Some(integrator) => integrator,
         None if by_steps => {
             let reason = match in_housing {
-                true => "a housing in explicit steps binds them",
-                false => "steps as given, as the source's",
+                true => "a housing in explicit steps limits them",
+                false => "prescribed steps, as in the source",
             };
             reader.note("numerics.integrator", "rk4", reason);
             Integrator::RungeKutta
         }
-        // Until the plan has looked.
+        // Until the plan has chosen.
         None => Integrator::Rosenbrock,
     };
     let estimates = integrator != Integrator::RungeKutta;
@@ -451,7 +452,7 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
     Ok(Steps { integrator, stepping, by_plan })
 }
 
-/// A time that must lie in the run; a window must begin before the end.
+/// A time within the run; a window must begin before the end.
 fn within(reader: &Reader, key: &str, end: f64) -> Result<Option<f64>, SceneError> {
     let Some(value) = reader.given_number(key) else { return Ok(None) };
     let (relation, allowed) =

@@ -14,7 +14,7 @@ const INNER: &str = "bearing.inner_race.radius";
 const OUTER: &str = "bearing.outer_race.radius";
 const THROUGH: &str = "bearing.clearance.through";
 
-/// Clearances beyond this part of the ball radius are taken for a mistake: real ones are below 1 %.
+/// Largest clearance, as a fraction of the ball radius: real ones are below 1 %.
 const LARGEST_CLEARANCE: f64 = 0.05;
 
 pub(crate) fn geometry(
@@ -82,7 +82,7 @@ fn given_ball(reader: &Reader) -> Option<f64> {
     radius.or_else(|| reader.given_number("bearing.ball.diameter").map(|diameter| 0.5 * diameter))
 }
 
-/// The key that states the ball's size.
+/// The key of the ball's size.
 fn ball_key(reader: &Reader) -> &'static str {
     if reader.is_given("bearing.ball.diameter") {
         "bearing.ball.diameter"
@@ -115,7 +115,7 @@ fn through_of(word: &str) -> ClearanceThrough {
     }
 }
 
-/// Groove radius from `groove_radius`, `conformity` or `osculation`, exactly one of which is given.
+/// Groove radius from `groove_radius`, `conformity` or `osculation`; exactly one is given.
 fn groove(reader: &Reader, race: &str, ball: f64, nominal: f64) -> Result<f64, SceneError> {
     let keys = ["groove_radius", "conformity", "osculation"].map(|k| format!("{race}.{k}"));
     let values = keys.each_ref().map(|key| reader.given_number(key));
@@ -148,7 +148,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     let (ball_given, clearance_given) = (given_ball(reader), given_clearance(reader));
     let (mut inner_given, mut outer_given) =
         (reader.given_number(INNER), reader.given_number(OUTER));
-    // A catalogue gives pitch and ball: races that the ball just touches, then the clearance.
+    // A catalogue gives pitch and ball: races that just touch the ball, then the clearance.
     let pitch_given = reader.given_number("bearing.pitch_radius");
     if let (None, None, Some(pitch), Some(ball)) =
         (inner_given, outer_given, pitch_given, ball_given)
@@ -228,7 +228,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     let inner_groove = groove(reader, "bearing.inner_race", ball, nominal_ball)?;
     let outer_groove = groove(reader, "bearing.outer_race", ball, nominal_ball)?;
     let pitch = reader.given_number("bearing.pitch_radius").unwrap_or(0.5 * (inner + outer));
-    // A twentieth of the ball's radius is far more than any clearance or rounding of a catalogue.
+    // A twentieth of the ball's radius is far more than clearance or rounding of a catalogue.
     let (half_way, slack) = (0.5 * (inner + outer), 0.05 * ball);
     let (least, most) = (half_way - slack, half_way + slack);
     if !(least..=most).contains(&pitch) {
@@ -254,7 +254,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     })
 }
 
-/// Which part the clearance sets: as given; else the one part without size; else the ball.
+/// The part that the clearance sets: as given; else the one part without size; else the ball.
 fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneError> {
     if let Some(word) = reader.choice_if_given(THROUGH) {
         return Ok(through_of(word));
@@ -268,7 +268,7 @@ fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneErr
         (true, ..) => {
             return Ok(reader.choice(THROUGH).map_or(ClearanceThrough::Ball, through_of));
         }
-        // All radii given: the clearance follows and nothing is set by it.
+        // With all radii the clearance follows.
         (false, ..) => return Ok(ClearanceThrough::Ball),
     };
     reader.note(THROUGH, word, reason);
@@ -320,7 +320,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
         let problem = Problem::InterferenceTooLarge { clearance, least };
         return Err(reader.document.error(clearance_key(reader), problem));
     }
-    // The number of balls plays no part in the sizes; it is checked against them later.
+    // The sizes do not depend on the number of balls; it is checked against them later.
     let touching =
         BearingGeometry::angular_contact(1, pitch, inner_groove, outer_groove, nominal, angle);
     let bearing = touching.with_radial_clearance(clearance, through);
@@ -344,7 +344,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
         let problem = Problem::WrongOrder {
             value: pitch,
             relation: "more than",
-            other_name: "what ball and groove need",
+            other_name: "the smallest for this ball and groove",
             other: pitch - sizes.inner_radius.min(sizes.outer.centre_radius),
             advice: "check the pitch radius and the ball",
         };

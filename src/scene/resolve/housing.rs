@@ -1,4 +1,4 @@
-//! From the given keys to a bearing in a housing: defaults, and what must hold between keys.
+//! From the given keys to a bearing in a housing: defaults, and checks between keys.
 
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};
@@ -18,12 +18,13 @@ use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 use crate::solids::bore_equilibrium::Axial;
 
-/// Part of the outer race's radius that a fit may have: ten times what is ever pressed in.
+/// Largest fit, as a fraction of the outer race's radius: ten times any real one.
 const LARGEST_FIT: f64 = 0.01;
 
-/// A bearing and its housing; none that is rigid.
+/// A bearing and its flexible housing; `None` for a rigid one.
 ///
 /// # Errors
+///
 /// The first key, in a fixed order, that is missing or contradicts others.
 pub(crate) fn in_housing(
     document: &Document,
@@ -32,7 +33,7 @@ pub(crate) fn in_housing(
     let mut reader = Reader::new(document);
     let method = reader.choice("housing.method").unwrap_or("quasi-static");
     if method == "rigid" {
-        // Mistakes in it are found whatever the method is.
+        // Errors in it are reported for every method.
         if document.first_below("solid").is_some() {
             housing_solid(document)?;
         }
@@ -42,7 +43,7 @@ pub(crate) fn in_housing(
         bearing.rigid_housing = true;
         bearing.assumptions.push(Assumption {
             name: "housing.method = rigid".into(),
-            text: "the outer race is fixed; the housing's mesh is not even read".into(),
+            text: "the outer race is fixed; the housing's mesh is not read".into(),
         });
         return Ok((bearing, None));
     }
@@ -83,7 +84,7 @@ fn not_applicable<T>(
     Err(document.refused(key, reason, advice))
 }
 
-/// What the bore's friction is; `None` where there is none, or none that could push.
+/// Friction of the bore; `None` without any, or with a coefficient of zero.
 fn friction(
     reader: &mut Reader,
     method: HousingMethod,
@@ -95,11 +96,11 @@ fn friction(
             return Ok(None);
         };
         let reason = "without a law the bore is smooth";
-        let advice = "write law = \"stick-slip\" beside it, or leave it out";
+        let advice = "add law = \"stick-slip\", or leave it out";
         return not_applicable(reader.document, &key, reason, advice);
     }
     if method != HousingMethod::Explicit {
-        let reason = "the springs of friction have a history, which only steps of `explicit` know";
+        let reason = "the springs of friction have a history, which needs the steps of `explicit`";
         let advice = "leave `friction` out, or write method = \"explicit\"";
         return not_applicable(reader.document, &law, reason, advice);
     }
@@ -108,14 +109,14 @@ fn friction(
     Ok((coefficient != 0.0).then_some(BoreFriction { coefficient, stretch }))
 }
 
-/// The race must be free to move, and nothing else may hold it; what turns needs friction to hold it.
+/// The race must be free to move without another support; a rotating one needs friction.
 fn refuse_motion(document: &Document, reader: &Reader, rough: bool) -> Result<(), SceneError> {
     let key = "outer_race.motion";
     match reader.choice_if_given(key) {
         Some("5-dof") => {}
         Some("6-dof") if rough => {}
         Some("6-dof") => {
-            let reason = "the seat has no friction, so nothing would keep the race from turning";
+            let reason = "the bore has no friction, so nothing would keep the race from turning";
             let advice = "write motion = \"5-dof\", or friction.law = \"stick-slip\" in [housing]";
             return not_applicable(document, key, reason, advice);
         }
@@ -130,13 +131,13 @@ fn refuse_motion(document: &Document, reader: &Reader, rough: bool) -> Result<()
         }
     }
     if let Some(key) = document.first_below("outer_race.foundation") {
-        let reason = "the outer race rests on a foundation or in a housing, not in both";
+        let reason = "the outer race is on a foundation or in a housing, not both";
         return not_applicable(document, key, reason, "leave out [housing], or the foundation");
     }
     Ok(())
 }
 
-/// Loads and motions of an outer race that a rigid housing fixes.
+/// Refuses loads and motions of an outer race that a rigid housing fixes.
 fn refuse_drives(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
     const FIXED: &str = "a rigid housing fixes the outer race";
     const ADVICE: &str = "leave it out, or choose another method";
@@ -165,19 +166,19 @@ fn drive_key(name: &str, load: bool) -> String {
     format!("outer_race.{name}.{kind}")
 }
 
-/// Whether explicit steps start in equilibrium; keys that have no effect then are refused.
+/// Start of explicit steps in equilibrium or not; refuses keys without effect.
 fn start(reader: &mut Reader, method: HousingMethod) -> Result<bool, SceneError> {
     let key = "housing.start";
     if method != HousingMethod::Explicit {
         if reader.is_given(key) {
-            let reason = "equilibria and shapes start in equilibrium by themselves";
+            let reason = "equilibria and reduced housings always start in equilibrium";
             return not_applicable(reader.document, key, reason, "leave it out");
         }
         return Ok(false);
     }
     let from_equilibrium = reader.choice(key) == Some("equilibrium");
     if from_equilibrium && reader.is_given("housing.fit_ramp") {
-        let reason = "a start in equilibrium has the race grown into its fit";
+        let reason = "a start in equilibrium includes the fit";
         return not_applicable(reader.document, "housing.fit_ramp", reason, "leave it out");
     }
     Ok(from_equilibrium)
@@ -211,13 +212,13 @@ fn settings(
         let length = bearing.dimensions.length;
         let (value, reason) = match length {
             Some(length) => (format!("{} mm", plain(1e3 * length)), "the bearing's length"),
-            None => ("that of the bore".to_string(), "neither it nor `bearing.length` is given"),
+            None => ("that of the bore".to_string(), "without it and `bearing.length`"),
         };
         reader.note("housing.width", &value, reason);
         length
     });
     let (unless_given, reason) = match friction {
-        Some(_) => ("free", "friction holds the race along its axis"),
+        Some(_) => ("free", "friction supports the race along its axis"),
         None => ("held", "a shoulder or ring beside the bore; the bore has no friction"),
     };
     let axial = reader.choice_if_given("housing.axial").unwrap_or_else(|| {
@@ -255,7 +256,7 @@ fn settings(
     if let Some((key, _)) = of_shapes.into_iter().find(|(_, given)| given.is_some())
         && method != HousingMethod::Reduced
     {
-        let reason = "only `reduced` moves in shapes";
+        let reason = "only `reduced` has modes";
         return not_applicable(
             document,
             key,
@@ -281,7 +282,7 @@ fn settings(
     })
 }
 
-/// What of the fit is given; a transition fit without any.
+/// The fit as given; a transition fit by default.
 fn fit(reader: &mut Reader, bearing: &Scene) -> Result<FitSize, SceneError> {
     let document = reader.document;
     let groove = bearing.dimensions.outer_race.radius;
@@ -323,14 +324,14 @@ fn fit(reader: &mut Reader, bearing: &Scene) -> Result<FitSize, SceneError> {
     }
 }
 
-/// What a course of equilibria cannot have.
+/// Refuses loads that need inertia in a quasi-static sequence.
 fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
     const ADVICE: &str = "leave it out, or write method = \"explicit\" in [housing]";
     let Some(outer) = &bearing.dynamics.outer else { return Ok(()) };
     for (i, (name, drive)) in COORDINATE_NAMES.iter().zip(&outer.drives).enumerate() {
         match drive {
             Drive::Motion(_) if i > 0 => {
-                let reason = "in equilibrium the housing says where the outer race is";
+                let reason = "in equilibrium the housing determines the position of the outer race";
                 return not_applicable(document, &drive_key(name, false), reason, ADVICE);
             }
             Drive::Load(load) if i > 2 && !load.is_zero() => {
@@ -349,17 +350,17 @@ fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError
         return not_applicable(document, "inner_race.torque", reason, "give inner_race.speed");
     }
     if bearing.dynamics.unbalance != 0.0 {
-        let reason = "an unbalance is inertia";
+        let reason = "an unbalance needs inertia";
         return not_applicable(document, "inner_race.unbalance", reason, ADVICE);
     }
     if !bearing.dynamics.dents.is_empty() {
-        let reason = "an equilibrium knows races without dents alone";
+        let reason = "an equilibrium has races without dents only";
         return not_applicable(document, "bearing.dent", reason, ADVICE);
     }
     Ok(())
 }
 
-/// What has no place in the equilibrium that a reduced housing starts from.
+/// Refuses what the equilibrium at the start of a reduced housing cannot have.
 fn refuse_start(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
     const ADVICE: &str = "leave it out, or write start = \"nominal\" in [numerics]";
     let (Some(outer), Some(run)) = (&bearing.dynamics.outer, &bearing.dynamics.run) else {
@@ -371,8 +372,7 @@ fn refuse_start(document: &Document, bearing: &Scene) -> Result<(), SceneError> 
     for (i, (name, drive)) in COORDINATE_NAMES.iter().zip(&outer.drives).enumerate() {
         match drive {
             Drive::Motion(_) if i > 0 => {
-                let reason =
-                    "in the equilibrium of the start the housing says where the outer race is";
+                let reason = "in the equilibrium of the start the housing determines the position of the outer race";
                 return not_applicable(document, &drive_key(name, false), reason, ADVICE);
             }
             Drive::Load(load) if i > 2 && load.value(0.0) != 0.0 => {
@@ -386,7 +386,7 @@ fn refuse_start(document: &Document, bearing: &Scene) -> Result<(), SceneError> 
     Ok(())
 }
 
-/// Holds the race along its axis where something beside the bore does, and leaves out what was said
+/// Fixes the axial position of a race with an axial support, and drops the defaults of a free one.
 /// of a race that nothing holds.
 fn rest(
     document: &Document,
@@ -396,7 +396,7 @@ fn rest(
     let nominal =
         bearing.dynamics.run.as_ref().is_some_and(|run| run.options.start == Start::Nominal);
     if nominal && housing.method == HousingMethod::Explicit {
-        let reason = "in a housing inner race and balls start in equilibrium with the outer race in its first place";
+        let reason = "in a housing inner race and balls start in equilibrium with the outer race in its nominal position";
         return not_applicable(document, "numerics.start", reason, "leave it out");
     }
     let start = bearing.outer_race[0];
@@ -406,7 +406,7 @@ fn rest(
         && let Drive::Load(load) = &drives[0]
     {
         if !load.is_zero() && housing.method != HousingMethod::QuasiStatic {
-            let reason = "something beside the bore holds the race along its axis";
+            let reason = "a support beside the bore fixes the race along its axis";
             let advice = "leave it out, or write axial = \"free\" in [housing]";
             return not_applicable(document, "outer_race.x.load", reason, advice);
         }
@@ -417,8 +417,8 @@ fn rest(
     Ok(())
 }
 
-/// Plots and columns that there can be: statics draws the load zone only, since the other plots move
-/// the bearing on and the housing with it; equilibria have neither cage nor slip.
+/// Available plots and columns: statics draws the load zone only, since the other plots would move the bearing and the
+/// housing; equilibria have neither cage nor slip.
 fn output(
     document: &Document,
     reader: &Reader,
@@ -428,7 +428,7 @@ fn output(
     let steps = bearing.dynamics.run.is_some() && method != HousingMethod::QuasiStatic;
     let drawn = |plot: &Plot| match plot {
         Plot::LoadZone => true,
-        // A run in steps has its own.
+        // A run in steps has its own plots.
         Plot::Polar => steps,
         Plot::MomentTilt => false,
     };
@@ -448,7 +448,7 @@ fn output(
         return Ok(());
     }
     use ChannelGroup::{Energy, Forces, Loads, Races};
-    // Those of both bodies are always there.
+    // Always present for both bodies.
     let mut channels = vec![Races, Forces, Energy];
     if reader.is_given("output.channels")
         && !run.channels.iter().all(|group| *group == Loads || channels.contains(group))

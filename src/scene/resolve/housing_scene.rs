@@ -1,4 +1,4 @@
-//! A scene with a bearing in a flexible housing, resolved; the housing's mesh is not read.
+//! A resolved scene with a bearing in a flexible housing; the housing's mesh is not read.
 
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::ch4_rotor::bore_friction::BoreFriction;
@@ -6,18 +6,18 @@ use crate::scene::resolve::resolved::{DefaultUsed, Scene};
 use crate::scene::resolve::solid_scene::SolidScene;
 use crate::solids::bore_equilibrium::Axial;
 
-/// How bearing and housing are solved together.
+/// Solution of bearing and housing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HousingMethod {
-    /// One equilibrium after the other, the housing condensed onto its bore.
+    /// A sequence of equilibria, with the housing condensed onto its bore.
     QuasiStatic,
-    /// Both in explicit steps that exchange impulses.
+    /// Both in explicit steps, exchanging impulses.
     Explicit,
-    /// The housing reduced to some shapes, which move with the bearing.
+    /// The housing reduced to modes, which move with the bearing.
     Reduced,
 }
 
-/// Size of the outer race in its bore.
+/// Fit of the outer race in its bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FitSize {
     /// Radial interference, m; negative is clearance.
@@ -26,29 +26,29 @@ pub enum FitSize {
     OuterRadius(f64),
 }
 
-/// What `[housing]` says, SI units.
+/// `[housing]`, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HousingSettings {
     pub method: HousingMethod,
     /// Surface set of the solid.
     pub bore: String,
     pub fit: FitSize,
-    /// Whether explicit steps start in the equilibrium of all, the race grown into its fit.
+    /// True if explicit steps start in equilibrium, with the fit.
     pub from_equilibrium: bool,
     /// Time over which an interference grows in, s.
     pub fit_ramp: Option<f64>,
-    /// Of the seat, m; `None`: as wide as the bore.
+    /// Width of the race in the bore, m; `None`: as wide as the bore.
     pub width: Option<f64>,
     pub axial: Axial,
     pub penalty: Penalty,
-    /// `None`: the bore is smooth.
+    /// `None` for a smooth bore.
     pub friction: Option<BoreFriction>,
-    /// Steps of the housing over their limit, and phase of the seat in a window.
+    /// Steps of the housing over their limit, and phase of the race in a coupling step.
     pub step_fraction: f64,
     pub window_phase: f64,
-    /// Natural shapes of a reduced housing up to this frequency, Hz; `None`: by what the bearing pushes with.
+    /// Highest natural frequency of a reduced housing, Hz; `None`: from the frequencies of the bearing.
     pub modes_to: Option<f64>,
-    /// Force on the race in its bore that shapes are made for, N; `None`: the largest load.
+    /// Force on the race in its bore for the correction modes, N; `None`: the largest load.
     pub press: Option<f64>,
     pub defaults_used: Vec<DefaultUsed>,
 }

@@ -1,4 +1,4 @@
-//! From given keys to a validated scene in SI units: defaults, and what must hold between keys.
+//! From given keys to a validated scene in SI units: defaults, and checks between keys.
 
 pub mod assembly;
 pub mod bearing;

@@ -1,4 +1,4 @@
-//! Whether bearings sit where they can.
+//! Checks of the positions of bearings.
 
 use crate::assembly::loads::Drive;
 use crate::motion::validity::race_limit;
@@ -7,7 +7,7 @@ use crate::scene::build::assembly::{Carrier, PlacedBearing, SceneBody, Spring, S
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::text::document::Document;
 
-/// Two bearings whose balls would be in one place of a body.
+/// Refuses two bearings whose balls are at one position of a body.
 pub(crate) fn refuse_shared_places(
     document: &Document,
     bearings: &[PlacedBearing],
@@ -24,12 +24,12 @@ pub(crate) fn refuse_shared_places(
                 let (Some(name), Some(second)) = (&one.name, &other.name) else { continue };
                 if a == b && (at - there).abs() < room {
                     let reason = format!(
-                        "its balls would run in those of bearing {second}: they are {:.4} mm apart on the \
+                        "its balls would be inside those of bearing {second}: they are {:.4} mm apart on the \
                          same body, less than a ball diameter",
                         1e3 * (at - there).abs()
                     );
                     let key = ["inner_at", "outer_at"][side];
-                    let advice = format!("give each its place, such as {key} = \"60 mm\"");
+                    let advice = format!("give each its own position, such as {key} = \"60 mm\"");
                     return Err(document.error_of_name(
                         "bearing",
                         name,
@@ -42,14 +42,14 @@ pub(crate) fn refuse_shared_places(
     Ok(())
 }
 
-/// Races that do not stand about each other where bodies are put: no ball reaches both.
+/// Refuses races too far apart along the axis for the balls to touch both.
 pub(crate) fn refuse_races_apart(
     document: &Document,
     bearings: &[PlacedBearing],
     bodies: &[SceneBody],
 ) -> Result<(), SceneError> {
     for placed in bearings {
-        // Bodies stand at the origin, or where they are held.
+        // Bodies are at the origin, or at their fixed position.
         let [inner, outer] = placed.carriers.map(|carrier| match carrier {
             Carrier::Own { at } => at,
             Carrier::Body { index, at } => match &bodies[index].race.drives[0] {
@@ -62,14 +62,14 @@ pub(crate) fn refuse_races_apart(
             continue;
         }
         let reason = format!(
-            "its inner race stands at {:.4} mm along the axis and its outer one at {:.4} mm, which is {:.4} mm apart; balls reach \
+            "its inner race is at {:.4} mm along the axis and its outer one at {:.4} mm, which is {:.4} mm apart; balls touch \
              both within {:.4} mm",
             1e3 * inner,
             1e3 * outer,
             1e3 * apart,
             1e3 * allowed
         );
-        let advice = "places count from the centre of the body that carries a race: give both the same `inner_at` and \
+        let advice = "positions count from the centre of the body under a race: give both the same `inner_at` and \
                       `outer_at`, or leave `outer_at` out";
         let problem = Problem::refused(reason, advice);
         return Err(match &placed.name {
@@ -80,7 +80,7 @@ pub(crate) fn refuse_races_apart(
     Ok(())
 }
 
-/// Shafts that are thicker than the groove of an inner race on them.
+/// Refuses shafts thicker than the groove of an inner race on them.
 pub(crate) fn refuse_thick_shafts(
     document: &Document,
     bearings: &[PlacedBearing],
@@ -95,7 +95,7 @@ pub(crate) fn refuse_thick_shafts(
             end += segment.length;
             start <= at && at <= end
         });
-        // At a shoulder the race may sit on the thinner side.
+        // At a shoulder the race may be on the thinner side.
         let Some(diameter) = here.map(|segment| segment.outer_diameter).reduce(f64::min) else {
             continue;
         };
@@ -118,7 +118,7 @@ pub(crate) fn refuse_thick_shafts(
     Ok(())
 }
 
-/// Bushings whose rubber begins inside the outer race that they hold.
+/// Refuses bushings whose rubber begins inside their outer race.
 pub(crate) fn refuse_rubber_in_races(
     document: &Document,
     bearings: &[PlacedBearing],
@@ -137,7 +137,7 @@ pub(crate) fn refuse_rubber_in_races(
             continue;
         }
         let reason = format!(
-            "the rubber begins at {} mm, inside the outer race that it holds, of {} mm",
+            "the rubber begins at {} mm, inside the outer race in it, of {} mm",
             display_time(1e3 * of.body.inner_diameter),
             display_time(2e3 * radius)
         );

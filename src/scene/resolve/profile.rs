@@ -1,4 +1,4 @@
-//! Profiles as they are written: `{ ramp = ["0 N", "250 N"], duration = "0.1 s" }`.
+//! Profiles in scenes: `{ ramp = ["0 N", "250 N"], duration = "0.1 s" }`.
 
 use crate::numeric::profile::Profile;
 use crate::scene::error::Problem;
@@ -8,7 +8,7 @@ use crate::scene::text::units::Dimension;
 use crate::scene::text::units::Dimension::{Angle, Frequency, Time};
 use crate::scene::text::value::{ValueError, described, quantity, shown};
 
-/// One way to write a profile. Its first member is what it is known by.
+/// A form of a profile, recognised by its first member.
 pub struct Form {
     pub doc: &'static str,
     pub example: &'static str,
@@ -37,7 +37,7 @@ impl Member {
     }
 }
 
-/// Longest time in a scene: nobody waits for hours of simulated time.
+/// Longest time in a scene.
 const TIME: Range = closed(0.0, 1e4, "s");
 
 static START: Key = Key::new(
@@ -107,7 +107,7 @@ pub static FORMS: &[Form] = &[
     },
 ];
 
-/// Reads the entries of a profile of `dimension`, each of whose values lies in `range`.
+/// Reads the entries of a profile of `dimension` with values within `range`.
 pub fn read(
     key: &'static Key,
     dimension: Dimension,
@@ -148,7 +148,7 @@ pub fn read(
     Ok(profile)
 }
 
-/// Largest size that a profile reaches.
+/// Largest magnitude of a profile.
 pub fn largest(profile: &Profile) -> f64 {
     match profile {
         Profile::Constant(value) => value.abs(),
@@ -193,7 +193,7 @@ fn form_of(entries: &[Entry], offset: usize) -> Result<&'static Form, ValueError
         return Err(match entries.iter().find(|entry| !anywhere(entry)) {
             Some(stray) => unknown(stray, heads.collect()),
             None => {
-                let because = ": nothing says what kind of profile this is".to_string();
+                let because = ": its entries name no kind of profile".to_string();
                 let example =
                     heads.map(|head| format!("`{head}`")).collect::<Vec<_>>().join(" or ");
                 (offset, Problem::Missing { because, example }).into()
@@ -213,7 +213,7 @@ fn form_of(entries: &[Entry], offset: usize) -> Result<&'static Form, ValueError
     }
 }
 
-/// A profile's entries and what its values may be.
+/// A profile's entries and the range of its values.
 struct Reader<'e> {
     key: &'static Key,
     dimension: Dimension,
@@ -308,13 +308,13 @@ impl Reader<'_> {
         }
     }
 
-    /// What values reach together must be allowed as well.
+    /// Checks the largest values of the sum of two members.
     fn limit(&self, [name, other]: [&str; 2], reached: &[f64]) -> Result<(), ValueError> {
         if reached.iter().all(|value| self.range.contains(*value, Some(self.dimension))) {
             return Ok(());
         }
         let problem = Problem::OutOfRange {
-            written: format!("what `{name}` and `{other}` reach together"),
+            written: format!("the largest value from `{name}` and `{other}` together"),
             allowed: self.range.to_string(),
             advice: self.key.hint,
         };

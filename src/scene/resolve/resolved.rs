@@ -1,4 +1,4 @@
-//! A scene as the program uses it: SI units, validated, every default named.
+//! A resolved scene: SI units, validated, with every default named.
 
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::loads::{CageBody, DrivenBody, RotatingLoad};
@@ -13,12 +13,12 @@ use crate::motion::simulation::RunOptions;
 pub use crate::scene::text::document::Assumption;
 use crate::scene::text::sweep::SweepAxis;
 
-/// A default that fills a hole of the scene: shown with the results as an assumption.
+/// A default in use: reported with the results as an assumption.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DefaultUsed {
     /// Dotted key that was not given.
     pub key: String,
-    /// Value used, as it would be written.
+    /// Value in use, as it would be written.
     pub value: String,
     pub reason: String,
 }
@@ -37,16 +37,16 @@ pub struct RaceDimensions {
     pub osculation: f64,
 }
 
-/// Where a groove ends.
+/// End of a groove.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shoulder {
     /// From the axis, m.
     pub radius: f64,
-    /// Or else of a usual height.
+    /// False for the default height.
     pub given: bool,
 }
 
-/// Sizes as a person states them, in m. What the solver needs is in [`BearingGeometry`].
+/// Dimensions in m, as given. The solver's are in [`BearingGeometry`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dimensions {
     /// Ball radius as given, or the one in use if none was. Conformity and osculation refer to it.
@@ -61,7 +61,7 @@ pub struct Dimensions {
     pub length: Option<f64>,
 }
 
-/// Cage, SI units; what was not given is `None`.
+/// Cage, SI units; `None` for values not given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cage {
     pub pocket_radius: Option<f64>,
@@ -95,29 +95,29 @@ pub enum RunPlot {
 #[derive(Clone, Debug, PartialEq)]
 pub enum CageInRun {
     Body(CageBody),
-    /// Why the run has no cage.
+    /// Reason for a run without a cage.
     LeftOut(String),
 }
 
-/// How long a run is, how it steps, and what it writes.
+/// Length, steps and output of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSettings {
     pub options: RunOptions,
-    /// Whether the plan is to choose the integrator; the options have one that goes with any bearing.
+    /// True if the plan chooses the integrator; the options then have one that suits every bearing.
     pub by_plan: bool,
     /// s.
     pub end: f64,
-    /// Time from one written row to the next, s.
+    /// Time between rows, s.
     pub output_interval: f64,
-    /// Time from one file of fields to the next, s; `None`: at the end alone.
+    /// Time between files of fields, s; `None`: only at the end.
     pub fields_interval: Option<f64>,
-    /// Time from which means and spectra are taken, s.
+    /// Start of the window of means and spectra, s.
     pub window_start: f64,
     /// Groups of columns to write.
     pub channels: Vec<ChannelGroup>,
 }
 
-/// What only a run needs, SI units.
+/// Part of a scene for runs, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamics {
     pub inner: DrivenBody,
@@ -136,10 +136,10 @@ pub struct Dynamics {
     pub dents: Vec<Dent>,
     /// Beside the groove of the inner and of the outer race.
     pub shoulders: [Shoulder; 2],
-    /// `None` where the scene gives no end.
+    /// `None` if the scene gives no end.
     pub run: Option<RunSettings>,
     pub plots: Vec<RunPlot>,
-    /// Defaults in use besides those of [`Scene::defaults_used`].
+    /// Defaults in use in addition to [`Scene::defaults_used`].
     pub defaults_used: Vec<DefaultUsed>,
 }
 
@@ -148,7 +148,7 @@ pub struct Dynamics {
 pub struct Scene {
     pub title: Option<String>,
     pub source: Option<String>,
-    /// Holes in the source that the scene fills, as its author named them.
+    /// Assumptions of the scene about unstated inputs, as named by its author.
     pub assumptions: Vec<Assumption>,
     /// Defaults in use for keys that were not given.
     pub defaults_used: Vec<DefaultUsed>,
@@ -169,19 +169,19 @@ pub struct Scene {
     pub outer_race: [f64; 5],
     /// Rotation of the inner race about X at t = 0, rad/s.
     pub inner_speed: Option<f64>,
-    /// Of the outer race, where it turns.
+    /// Rotation of the outer race, if any.
     pub outer_speed: Option<f64>,
-    /// World axes, m/s²; zero leaves the weight out.
+    /// World axes, m/s²; zero without weight.
     pub gravity: [f64; 3],
     pub centrifugal: bool,
 
-    /// What a run needs besides.
+    /// Part for runs.
     pub dynamics: Dynamics,
 
-    /// Whether a housing is there and counts as rigid, so that nothing of it is read.
+    /// True if the housing is rigid, so that it is not read.
     pub rigid_housing: bool,
 
     pub plots: Vec<Plot>,
-    /// What a sweep varies unless it is told otherwise.
+    /// Axes of a sweep without `--vary`.
     pub sweep: Vec<SweepAxis>,
 }

@@ -1,4 +1,4 @@
-//! From the given keys to what a solid is made of: linear elastic, or rubber with all that follows from it.
+//! From the given keys to the material of a solid: linear elastic, or rubber with its consequences.
 
 use crate::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use crate::ch2_housing::elastomer::maxwell::Maxwell;
@@ -14,7 +14,7 @@ use crate::scene::text::value::Checked;
 use crate::solids::rubber::steps::Stepping;
 
 const LAW: &str = "solid.material.law";
-/// B over C_R where nothing is given: that of Tables 2.3 and 3.1.
+/// Default of B over C_R: that of Tables 2.3 and 3.1.
 const BULK_RATIO: f64 = 100.0;
 /// As the range of `bulk_ratio`.
 const MOST_BULK_RATIO: f64 = 1e6;
@@ -26,7 +26,7 @@ const RUBBER: f64 = 1100.0;
 /// Estimated error of the stress in a step, over the largest so far.
 const ACCURACY: f64 = 1e-3;
 
-/// Keys and tables that only rubber has.
+/// Keys and tables of rubber only.
 const OF_RUBBER: [&str; 8] = [
     "solid.material.rubber_modulus",
     "solid.material.table",
@@ -38,12 +38,12 @@ const OF_RUBBER: [&str; 8] = [
     "solid.harmonic",
 ];
 
-/// Keys that a solid of rubber has no use for, and why.
+/// Keys without effect on a solid of rubber, with reasons.
 const NOT_OF_RUBBER: [(&str, &str); 10] = [
     ("solid.material.youngs_modulus", "it belongs to the law \"linear-elastic\""),
     ("solid.material.poisson_ratio", "it belongs to the law \"linear-elastic\""),
-    ("solid.damping", "what rubber loses follows from its Maxwell elements"),
-    ("solid.damped_motion", "what rubber loses follows from its Maxwell elements"),
+    ("solid.damping", "damping of rubber follows from its Maxwell elements"),
+    ("solid.damped_motion", "damping of rubber follows from its Maxwell elements"),
     ("solid.velocity", NO_INERTIA),
     ("solid.spin", NO_INERTIA),
     ("modes", NO_INERTIA),
@@ -58,7 +58,7 @@ pub(crate) fn is_rubber(document: &Document) -> bool {
     matches!(document.value(LAW), Some(Checked::Choice("elastomer")))
 }
 
-/// What a housing is made of.
+/// Refuses a housing of rubber.
 pub(crate) fn refuse_rubber(document: &Document) -> Result<(), SceneError> {
     if !is_rubber(document) {
         return Ok(());
@@ -103,7 +103,7 @@ pub(crate) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
     Ok((Law::Elastomer(Box::new(RubberScene { material, table, harmonic })), density))
 }
 
-/// The density that is given, else a usual one.
+/// The given density, else a usual one.
 fn density(reader: &mut Reader, usual: f64, reason: &str) -> f64 {
     const KEY: &str = "solid.material.density";
     reader.given_number(KEY).unwrap_or_else(|| {
@@ -112,7 +112,7 @@ fn density(reader: &mut Reader, usual: f64, reason: &str) -> f64 {
     })
 }
 
-/// The rubber of the keys in the table `of`; keys given beside a table of the source take the place of what it says.
+/// The rubber of the keys in the table `of`; given keys replace values of a table of the source.
 pub(crate) fn rubber(
     reader: &mut Reader,
     of: &str,
@@ -149,12 +149,12 @@ pub(crate) fn rubber(
     let bulk = match (bulk, ratio) {
         (Some(bulk), _) if bulk < modulus => {
             let reason =
-                "rubber hardly changes its volume, and this is less than C_R of its network";
+                "rubber is nearly incompressible, and this is less than C_R of its network";
             let advice = "give at least C_R, usually 100 times that and more";
             return Err(document.refused("solid.material.bulk_modulus", reason, advice));
         }
         (Some(bulk), _) if bulk > MOST_BULK_RATIO * modulus => {
-            let reason = "no rubber resists a change of volume as much, and rounding takes the digits of what is left";
+            let reason = "no rubber resists a change of volume as much, and rounding would dominate the result";
             let advice = "give at most a million times C_R; many rubbers have 2000 MPa, a thousand times that";
             return Err(document.refused("solid.material.bulk_modulus", reason, advice));
         }
@@ -210,13 +210,13 @@ fn harmonic(reader: &Reader) -> Result<Option<Harmonic>, SceneError> {
     };
     let set = match document.value("solid.harmonic.set") {
         Some(Checked::Text(set)) => set.clone(),
-        _ => return Err(reader.missing("solid.harmonic.set", ", the set that is moved")),
+        _ => return Err(reader.missing("solid.harmonic.set", ", the moved set")),
     };
     let axis = match reader.choice_if_given("solid.harmonic.axis") {
         Some("x") => 0,
         Some("y") => 1,
         Some(_) => 2,
-        None => return Err(reader.missing("solid.harmonic.axis", ", along which it is moved")),
+        None => return Err(reader.missing("solid.harmonic.axis", ", the direction of motion")),
     };
     Ok(Some(Harmonic { set, axis, frequencies }))
 }
@@ -229,7 +229,7 @@ pub(crate) fn check_order(
 ) -> Result<(), SceneError> {
     use crate::mesh::Order;
     let linear = match source {
-        // A file says what it has; the mesh is looked at when it is read.
+        // The order of a file is known when the mesh is read.
         MeshSource::File { .. } => order == Some(Order::Linear),
         _ => order != Some(Order::Quadratic),
     };
@@ -241,9 +241,9 @@ pub(crate) fn check_order(
     Err(document.refused("solid.mesh.order", reason, advice))
 }
 
-pub(crate) const FOUR_NODES_LOCK: &str = "four-node elements of rubber lock: it hardly changes its volume, and they can hardly do anything else";
+pub(crate) const FOUR_NODES_LOCK: &str = "four-node elements of nearly incompressible rubber lock";
 
-/// How the steps of a run follow from the scene.
+/// Steps of a run.
 pub(crate) fn steps(reader: &mut Reader) -> RunSteps {
     RunSteps::Implicit(match reader.given_number("numerics.step") {
         Some(step) => Stepping::Fixed(step),

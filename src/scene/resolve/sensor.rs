@@ -1,4 +1,4 @@
-//! From the keys of sensors to what they sit on and feel.
+//! From the keys of sensors to their mounts and readings.
 
 use crate::ch5_cage::telemeter::{Telemeter, copper_resistance, natural_frequency};
 use crate::scene::build::assembly::{AssemblyScene, Carrier};
@@ -12,7 +12,7 @@ use crate::scene::tables::sensor::SENSORS;
 use crate::scene::text::document::Document;
 use crate::scene::text::scopes::no_such;
 
-/// What only one kind of sensor has.
+/// Keys of accelerometers only.
 const OF_AN_ACCELEROMETER: [&str; 5] = ["on", "at", "radius", "angle", "direction"];
 const OF_A_TELEMETER: [&str; 12] = [
     "bearing",
@@ -29,10 +29,11 @@ const OF_A_TELEMETER: [&str; 12] = [
     "frequency",
 ];
 
-/// Gives a scene its sensors.
+/// Adds the sensors of a scene.
 ///
 /// # Errors
-/// What is missing, or sits on what is not there or does not move by itself.
+///
+/// Missing keys; a mount that does not exist or does not move by itself.
 pub(crate) fn add_sensors(
     document: &Document,
     scene: &mut AssemblyScene,
@@ -40,8 +41,7 @@ pub(crate) fn add_sensors(
     refuse_nameless(document)?;
     for name in document.names("sensor") {
         if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
-            let reason =
-                "equilibria that follow one another have no accelerations and no cage in motion";
+            let reason = "a quasi-static sequence has no accelerations and no moving cage";
             let advice = "leave it out, or write method = \"reduced\" or \"explicit\" in [housing]";
             let problem = Problem::refused(reason, advice);
             return Err(document.error_of_name("sensor", name, problem));
@@ -52,11 +52,11 @@ pub(crate) fn add_sensors(
     Ok(())
 }
 
-/// Refuses sensors where no bearing moves.
+/// Refuses sensors without a moving bearing.
 pub(crate) fn refuse_sensors(document: &Document) -> Result<(), SceneError> {
     refuse_nameless(document)?;
     let Some(name) = document.names("sensor").next() else { return Ok(()) };
-    let reason = "a sensor watches bearings and what they sit on";
+    let reason = "a sensor is for bearings and the bodies under them";
     let advice = "record places of a solid with [[solid.probe]]";
     Err(document.error_of_name("sensor", name, Problem::refused(reason, advice)))
 }
@@ -109,7 +109,7 @@ fn accelerometer(
     if let SensorAt::Body(body) = at
         && scene.bodies[*body].beam.is_some()
     {
-        let reason = format!("{on} bends: an accelerometer sits on what is rigid");
+        let reason = format!("{on} is flexible: an accelerometer is mounted on a rigid body");
         let advice = "record its sections with `probe` in its beam, or put the sensor on a race or a housing's race";
         return Err(reader.document.refused("sensor.on", reason, advice));
     }
@@ -122,7 +122,7 @@ fn accelerometer(
     Ok(SceneSensorKind::Accelerometer { at: *at, along, radius, angle, direction })
 }
 
-/// What a sensor can sit on, as scenes name it.
+/// Mounts of sensors, by their names in scenes.
 fn places(scene: &AssemblyScene) -> Vec<(String, SensorAt)> {
     let mut places: Vec<SensorAt> = (0..scene.bodies.len()).map(SensorAt::Body).collect();
     for (bearing, placed) in scene.bearings.iter().enumerate() {
@@ -146,7 +146,7 @@ fn no_such_place(on: &str, places: &[(String, SensorAt)]) -> Problem {
         Some(nearest) => format!("did you mean {nearest}?"),
         None => "write one of them; an outer race is one where it moves by itself".into(),
     };
-    let reason = format!("no sensor sits on {on:?}, it may on: {}", known.join(", "));
+    let reason = format!("{on:?} is no mount of a sensor; mounts are: {}", known.join(", "));
     Problem::refused(reason, advice)
 }
 
@@ -166,7 +166,7 @@ fn telemeter(reader: &mut Reader, scene: &AssemblyScene) -> Result<SceneSensorKi
     let cage = match &scene.bearings[bearing].scene.dynamics.cage {
         CageInRun::Body(cage) => cage,
         CageInRun::LeftOut(why) => {
-            let reason = format!("a telemeter sits on a cage, and there is none: {why}");
+            let reason = format!("a telemeter is mounted on a cage, and there is none: {why}");
             let advice = "give the bearing a cage with its mass, or leave the telemeter out";
             return Err(reader.document.refused("sensor.kind", reason, advice));
         }

@@ -1,4 +1,4 @@
-//! From the keys of a body that bends to its beam and what acts along it.
+//! From the keys of a flexible body to its beam and the loads along it.
 
 use crate::ch4_rotor::disc::Inertia as DiscInertia;
 use crate::members::beam::{Beam, BeamDisc, BeamSegment};
@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 
 const TABLE: &str = "body.beam";
 
-/// The beam of a body, if it has one. Places count from the body's centre.
+/// The beam of a body, if it has one. Positions are relative to the body's centre.
 pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError> {
     let document = reader.document;
     let Some(first) = document.first_below(TABLE) else { return Ok(None) };
@@ -28,11 +28,11 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
         |key: &str, reason: &str, advice: &str| Err(document.refused(key, reason, advice));
     for (part, advice) in [
         ("body.inertia", "leave it out: mass and inertia follow from segments and discs"),
-        ("body.unbalance", "write [[body.NAME.beam.unbalance]] with its place"),
-        ("body.rotating_load", "write [[body.NAME.beam.load]] with its place"),
+        ("body.unbalance", "write [[body.NAME.beam.unbalance]] with its position"),
+        ("body.rotating_load", "write [[body.NAME.beam.load]] with its position"),
     ] {
         if let Some(given) = document.first_below(part) {
-            return refused(given, "the body bends (`beam`)", advice);
+            return refused(given, "the body is flexible (`beam`)", advice);
         }
     }
     let mut number = |key: &str| reader.number(&format!("{TABLE}.{key}")).unwrap_or(0.0);
@@ -66,7 +66,7 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     if segments.is_empty() {
         return refused(
             first,
-            "a shaft that bends has segments",
+            "a flexible shaft has segments",
             "add segments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }] to [body.NAME.beam]",
         );
     }
@@ -89,7 +89,7 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     let load = |item: ItemRef| {
         let force = ["x", "y", "z"].map(|axis| item_profile(item, axis));
         if force.iter().all(Option::is_none) {
-            return Err(missing(item, "z", ", nothing acts", "z = \"-3000 N\""));
+            return Err(missing(item, "z", ", there is no force", "z = \"-3000 N\""));
         }
         Ok((at(item)?, force.map(|force| force.unwrap_or(Profile::ZERO))))
     };
@@ -134,21 +134,22 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     }))
 }
 
-/// What to say of a place that is not between the ends of a shaft (m).
+/// Problem of a position that is not between the ends of a shaft (m); `None` if it is.
 fn beside(at: f64, [start, end]: [f64; 2], of: &str) -> Option<Problem> {
-    // As near to its ends as stations are.
+    // Within the tolerance of stations.
     let room = 1e-9 * (end - start);
     if start - room <= at && at <= end + room {
         return None;
     }
     let [at, start, end] = [at, start, end].map(|x| 1e3 * x);
-    let reason = format!("{at:.4} mm is not on {of}, which goes from {start:.4} to {end:.4} mm");
-    Some(Problem::refused(reason, "places count from the body's centre"))
+    let reason = format!("{at:.4} mm is not on {of}, which extends from {start:.4} to {end:.4} mm");
+    Some(Problem::refused(reason, "positions are relative to the body's centre"))
 }
 
-/// Races sit on the shafts that carry them, springs end at them.
+/// Refuses races and springs beside their shafts.
 ///
 /// # Errors
+///
 /// The first that is beside its shaft.
 pub(crate) fn refuse_places_off_shafts(
     document: &Document,
@@ -182,15 +183,15 @@ pub(crate) fn refuse_places_off_shafts(
     Ok(())
 }
 
-/// Cells, where the segments are tetrahedra.
+/// Mesh of the segments, if they are tetrahedra.
 fn mesh(reader: &mut Reader) -> Result<Option<ShaftMesh>, SceneError> {
     let document = reader.document;
     let Some(first) = document.first_below("body.beam.mesh") else { return Ok(None) };
     let refused = |key: &str, reason: &str, advice: &str| document.refused(key, reason, advice);
     let order = reader.given_number("body.beam.mesh.order").ok_or_else(|| {
         let advice =
-            "add order = 2 to [body.NAME.beam.mesh], or 1 for elements as the source has them";
-        refused(first, "a mesh has elements of an order", advice)
+            "add order = 2 to [body.NAME.beam.mesh], or 1 for four-node elements as in the source";
+        refused(first, "a mesh has elements of a stated order", advice)
     })?;
     let mut cells = |key: &str| reader.number(key).unwrap_or(1.0) as usize;
     let (around, radial) = (cells("body.beam.mesh.around"), cells("body.beam.mesh.radial"));
@@ -207,7 +208,7 @@ fn mesh(reader: &mut Reader) -> Result<Option<ShaftMesh>, SceneError> {
     }))
 }
 
-/// What joins races to sections, where a run steps the elements themselves.
+/// Springs between races and sections, for elements in explicit steps.
 fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
     const JOINT: [&str; 2] = ["body.beam.mesh.race_stiffness", "body.beam.mesh.race_damping"];
     let document = reader.document;
@@ -218,7 +219,7 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
         return match JOINT.into_iter().find(|key| reader.is_given(key)) {
             Some(key) => refused(
                 key,
-                "races sit on the sections themselves of a shaft that is reduced",
+                "races are joined directly to the sections of a reduced shaft",
                 "write method = \"explicit\" in [body.NAME.beam.mesh], or leave it out",
             ),
             None => Ok(None),
@@ -230,10 +231,10 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
             "elements in explicit steps have all of their frequencies",
             "leave it out",
         ),
-        ("body.torque", "a shaft in explicit steps turns at a given speed", "write `speed`"),
+        ("body.torque", "a shaft in explicit steps has a prescribed speed", "write `speed`"),
         (
             "body.beam.internal_damping",
-            "elements in explicit steps are damped in axes that stand still alone",
+            "elements in explicit steps have damping only in axes that do not rotate",
             "leave it out, or write method = \"reduced\" in [body.NAME.beam.mesh]",
         ),
     ] {
@@ -245,15 +246,15 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
         let advice = "write speed = \"1000 rpm\" in [body.NAME]";
         return refused(
             "body.beam.mesh.method",
-            "elements in explicit steps turn at a given speed",
+            "elements in explicit steps have a prescribed speed",
             advice,
         );
     }
-    // Its body is the elements: there is no rigid one to push or hold.
+    // The elements are its body: loads and foundations act on sections.
     for part in ["x", "y", "z", "tilt_y", "tilt_z", "foundation"] {
         let part = format!("body.{part}");
         if let Some(key) = document.first_below(&part) {
-            let reason = "the shaft is its elements, which loads meet at sections";
+            let reason = "the shaft is a mesh, whose loads act at sections";
             return refused(
                 key,
                 reason,
@@ -262,10 +263,10 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
         }
     }
     if reader.choice_if_given("body.beam.damped_motion") == Some("relative-to-rigid") {
-        let reason = "elements in explicit steps are damped in axes that stand still alone";
+        let reason = "elements in explicit steps have damping only in axes that do not rotate";
         return refused("body.beam.damped_motion", reason, "leave it out");
     }
-    // A disc without inertia has no motion of its own on its spring.
+    // A disc on its spring needs inertia.
     let inertia = ["mass", "axial", "transverse"];
     for item in document.items("body.beam.disc").filter(|item| item_number(*item, "mass").is_some())
     {
@@ -280,10 +281,11 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
     Ok(Some(RaceJoint { stiffness, damping }))
 }
 
-/// Nothing but inner races takes hold of a shaft in elements.
+/// Refuses springs and outer races on a shaft in elements.
 ///
 /// # Errors
-/// The first spring, or outer race, that does.
+///
+/// The first spring or outer race on one.
 pub(crate) fn refuse_springs_on_elements(
     document: &Document,
     scene: &AssemblyScene,
@@ -294,7 +296,7 @@ pub(crate) fn refuse_springs_on_elements(
     for placed in &scene.bearings {
         let Carrier::Body { index, .. } = placed.carriers[1] else { continue };
         if is_elements(index) {
-            let reason = "an outer race does not sit on elements in explicit steps";
+            let reason = "an outer race cannot be on elements in explicit steps";
             let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]";
             let problem = Problem::refused(reason, advice);
             return Err(match &placed.name {
@@ -311,7 +313,7 @@ pub(crate) fn refuse_springs_on_elements(
             }
             let of = &scene.bodies[index];
             let reason = format!(
-                "body {} is elements in explicit steps, which bearings alone take hold of",
+                "body {} is a mesh in explicit steps, to which only bearings can be joined",
                 of.name
             );
             let advice = "write method = \"reduced\" in [body.NAME.beam.mesh]";
@@ -336,7 +338,7 @@ fn disc(item: ItemRef, at: f64, density: f64) -> Result<BeamDisc, SceneError> {
             return Err(item.error(name, Problem::Exclusive { rival: "mass".into(), advice }));
         }
         if given("axial").is_some() && given("transverse").is_none() {
-            let because = " beside `axial`";
+            let because = " with `axial`";
             return Err(missing(item, "transverse", because, "transverse = \"0.05 kg m^2\""));
         }
         let [axial, transverse] = ["axial", "transverse"].map(|name| given(name).unwrap_or(0.0));

@@ -1,4 +1,4 @@
-//! From the given keys to a solid: defaults, and what must hold between keys.
+//! From the given keys to a solid: defaults, and checks between keys.
 
 use crate::mesh::{Order, Surface};
 use crate::numeric::profile::Profile;
@@ -25,14 +25,14 @@ use crate::solids::model::DampedMotion;
 use crate::solids::tangent::MassMatrix;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// Steps of an explicit method end a little before its limit, which falls as a body stiffens.
+/// Default step of an explicit method over its limit, which falls as a body stiffens.
 const STEP_FRACTION: f64 = 0.8;
 
-/// A scene about bearings, alone or with what they sit on and in, or about a solid.
+/// A scene of bearings, with or without bodies and housings, or of a solid.
 ///
 /// # Errors
-/// The first key, in a fixed order, that is missing or contradicts others; a bearing and a solid
-/// without `[housing]`.
+///
+/// The first key, in a fixed order, that is missing or contradicts others; a bearing and a solid without `[housing]`.
 pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
     if let Some(mut scene) = of_bearings(document)? {
         add_sensors(document, &mut scene)?;
@@ -41,7 +41,7 @@ pub fn resolve_subject(document: &Document) -> Result<Subject, SceneError> {
     Ok(Subject::Solid(Box::new(of_solid(document)?)))
 }
 
-/// A scene about bearings; `None` for one about a solid.
+/// A scene of bearings; `None` for one of a solid.
 fn of_bearings(document: &Document) -> Result<Option<AssemblyScene>, SceneError> {
     if is_assembly(document) {
         return Ok(Some(assembly(document)?));
@@ -71,14 +71,14 @@ fn of_solid(document: &Document) -> Result<SolidScene, SceneError> {
     if let Some(other) = OF_A_BEARING.iter().find_map(|part| document.first_below(part)) {
         let reason = "a bearing and a solid in one scene are coupled by a [housing] table";
         let solid = document.first_below("solid").unwrap_or("solid");
-        let advice = format!("add it, or leave out `{other}`, or `{solid}` and all beside it");
+        let advice = format!("add it, or leave out `{other}`, or `{solid}` and its tables");
         return Err(document.refused(other, reason, advice));
     }
     refuse_sensors(document)?;
     solid_scene(document)
 }
 
-/// What takes a bearing has no use for a solid, and for what belongs to one.
+/// Refuses a solid, and its keys, in a scene of a bearing.
 pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
     const OF_A_SOLID: [&str; 4] = ["housing", "solid", "modes", "numerics.method"];
     let Some(key) = OF_A_SOLID.iter().find_map(|part| document.first_below(part)) else {
@@ -89,20 +89,20 @@ pub(crate) fn refuse_solid(document: &Document) -> Result<(), SceneError> {
         ("this takes a bearing alone, and the scene has a housing", commands.to_string())
     } else if key.starts_with("solid") {
         let commands = "`check`, `plan`, `statics`, `modes` and `run` take a solid by itself";
-        ("this takes a bearing, and the scene holds a solid", commands.to_string())
+        ("this takes a bearing, and the scene has a solid", commands.to_string())
     } else {
-        ("only a solid has it, and the scene holds none", "leave it out".to_string())
+        ("only a solid has it, and the scene has none", "leave it out".to_string())
     };
     Err(document.refused(key, reason, advice))
 }
 
-/// Where nothing has elements there are no fields.
+/// Refuses fields in a scene without elements.
 pub(crate) fn refuse_fields(document: &Document) -> Result<(), SceneError> {
     let key = "numerics.fields_interval";
     if document.value(key).is_none() {
         return Ok(());
     }
-    let reason = "only solids and shafts in elements have fields, and the scene holds none";
+    let reason = "only solids and shafts in elements have fields, and the scene has none";
     Err(document.refused(key, reason, "leave it out"))
 }
 
@@ -131,7 +131,7 @@ fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
     Ok(scene)
 }
 
-/// The solid that is a bearing's housing.
+/// The solid of a bearing's housing.
 pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneError> {
     const OF_A_FREE_SOLID: [&str; 6] = [
         "solid.velocity",
@@ -145,8 +145,8 @@ pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneErro
         let reason = "a housing does not use it";
         let advice = match key.starts_with("solid.probe") {
             true => {
-                "leave it out: the displacement of every node of the housing stands in the fields (fields.pvd, \
-                 for ParaView), that of the outer race in series.csv"
+                "leave it out: the displacement of every node of the housing is in the fields (fields.pvd, \
+                  for ParaView), that of the outer race in series.csv"
             }
             false => "leave it out",
         };
@@ -160,12 +160,12 @@ pub(crate) fn housing_solid(document: &Document) -> Result<SolidScene, SceneErro
     Ok(scene)
 }
 
-/// What a solid is by itself or as a housing; without modes, run and plots.
+/// A solid alone or as a housing, without modes, run and plots.
 fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
     let document = reader.document;
     let mesh = mesh_request(reader)?;
     let (law, density) = rubber::material(reader)?;
-    // Of what rubber has no use for, nothing is said.
+    // Keys without effect on rubber are not read.
     let rubber = is_rubber(document);
     let mut number = |path: &str| if rubber { 0.0 } else { reader.number(path).unwrap_or(0.0) };
     let (damping, spin) = (number("solid.damping"), number("solid.spin"));
@@ -210,7 +210,7 @@ fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
     })
 }
 
-/// Keys of runs, plots and sweeps that a solid has no use for.
+/// Refuses keys of runs, plots and sweeps without effect on a solid.
 fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
     const SHARED: [&str; 10] = [
         "base",
@@ -311,7 +311,7 @@ fn set(item: ItemRef) -> Result<SetRequest, SceneError> {
     let way = match chosen[..] {
         [way] => way,
         [] => {
-            let because = ", nothing says where the set is".to_string();
+            let because = ", the position of the set is missing".to_string();
             let example = "`plane = \"x\"` with `at`, `cylinder`, or `low` and `high`".to_string();
             return Err(item.error("plane", Problem::Missing { because, example }));
         }
@@ -383,7 +383,7 @@ fn held(item: ItemRef) -> Result<Held, SceneError> {
     let set = item_text(item, "set", "set = \"x_low\"")?;
     let motion = AXES.map(|axis| item_profile(item, axis));
     if motion.iter().all(Option::is_none) {
-        return Err(missing(item, "x", ", nothing is held", "x = true"));
+        return Err(missing(item, "x", ", nothing is fixed", "x = true"));
     }
     Ok(Held { set, motion })
 }
@@ -416,7 +416,14 @@ fn probe(item: ItemRef) -> Result<Probe, SceneError> {
         (Some(_), Some(_)) => return Err(exclusive(item, "at", "set")),
         (Some(Checked::Text(set)), None) => ProbeOf::Set(set.clone()),
         (None, Some(Checked::Vector(place))) => ProbeOf::Place(*place),
-        _ => return Err(missing(item, "set", ", nothing to look at", "set = \"x_high\"")),
+        _ => {
+            return Err(missing(
+                item,
+                "set",
+                ", the position of the probe is missing",
+                "set = \"x_high\"",
+            ));
+        }
     };
     let name = match (item.value("name"), &of) {
         (Some(Checked::Text(name)), _) => name.clone(),
@@ -464,7 +471,7 @@ fn explicit(reader: &mut Reader) -> RunSteps {
         (Some(step), _) => SolidStepping::Fixed(step),
         (None, Some(fraction)) => SolidStepping::FractionOfLimit(fraction),
         (None, None) => {
-            let reason = "a part of the largest stable step of a solid";
+            let reason = "a fraction of the largest stable step of a solid";
             reader.note("numerics.step_fraction", &plain(STEP_FRACTION), reason);
             SolidStepping::FractionOfLimit(STEP_FRACTION)
         }

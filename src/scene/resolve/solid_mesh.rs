@@ -1,4 +1,4 @@
-//! Where a solid's mesh comes from: a file, or a generator and its dimensions.
+//! Source of a solid's mesh: a file, or a generator and its dimensions.
 
 use crate::mesh::generate::{
     Bushing, BushingMesh, Cage, CageMesh, ContactBlock, Housing, HousingMesh, Part, PillowBlock,
@@ -11,7 +11,7 @@ use crate::scene::resolve::solid_scene::MeshSource;
 use crate::scene::text::value::Checked;
 use std::path::Path;
 
-/// Dimensions and cells that each generator takes; `?` marks what may be left out.
+/// Dimensions and cells of each generator; `?` marks optional ones.
 const KEYS_OF: &[(&str, &[&str])] = &[
     ("bar", &["length", "width", "height", "cells.along", "cells.across", "cells.up"]),
     ("block", &["half_width", "cells.per_half_width", "cells.deep", "cells.growth?"]),
@@ -79,7 +79,7 @@ const PILLOW_BLOCK: &[&str] = &[
     AXIAL,
     GROWTH,
 ];
-/// Keys of `[solid.mesh]` that are no dimension.
+/// Keys of `[solid.mesh]` that are not dimensions.
 const GENERAL: &[&str] = &[
     "file",
     "generate",
@@ -93,7 +93,7 @@ const GENERAL: &[&str] = &[
     "largest_aspect",
 ];
 
-/// What generators call their dimensions in errors, and the key below `solid.mesh` for it.
+/// Names of dimensions in errors of generators, and their keys below `solid.mesh`.
 pub const KEY_OF_DIMENSION: &[(&str, &str)] = &[
     ("inner radius", "inner_radius"),
     ("outer radius", "outer_radius"),
@@ -135,13 +135,12 @@ pub const KEY_OF_DIMENSION: &[(&str, &str)] = &[
     ("grading", "cells.grading"),
 ];
 
-/// The key below `solid.mesh` of what a generator names in an error; nothing for what follows from
-/// several.
+/// The key below `solid.mesh` of a dimension in an error of a generator; `None` if it depends on several.
 pub fn key_of_dimension(what: &str) -> Option<&'static str> {
     KEY_OF_DIMENSION.iter().find(|(known, _)| *known == what).map(|(_, key)| *key)
 }
 
-/// The generators and what each takes, for the reference.
+/// The generators and the keys of each, for the reference.
 pub(crate) fn generators() -> impl Iterator<Item = (&'static str, String)> {
     KEYS_OF.iter().map(|(name, keys)| {
         let keys: Vec<String> = keys
@@ -174,7 +173,7 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
                 }
             };
             if !["msh", "inp"].contains(&extension(&file).as_str()) {
-                let reason = "the name's ending tells the format, and this one is not known";
+                let reason = "the extension of the name states the format, and this one is unknown";
                 let advice = "name a Gmsh file .msh, an Abaqus or CalculiX input file .inp";
                 return Err(reader.document.refused("solid.mesh.file", reason, advice));
             }
@@ -200,13 +199,13 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
     }
 }
 
-/// Ending of a file's name in small letters.
+/// Extension of a file name in lower case.
 pub(crate) fn extension(file: &str) -> String {
     let ending = Path::new(file).extension().and_then(|ending| ending.to_str());
     ending.unwrap_or_default().to_ascii_lowercase()
 }
 
-/// A dimension that the chosen source does not use would have no effect.
+/// Refuses dimensions without effect on the chosen source.
 fn refuse_strangers(reader: &Reader, generator: Option<&str>) -> Result<(), SceneError> {
     let own = KEYS_OF.iter().find(|(name, _)| Some(*name) == generator).map(|(_, keys)| *keys);
     for key in reader.document.given_keys() {

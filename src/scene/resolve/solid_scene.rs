@@ -1,4 +1,4 @@
-//! A scene with a flexible solid alone, resolved: SI units, defaults filled in, its mesh not read.
+//! A resolved scene with a flexible solid alone: SI units, defaults filled in, its mesh not read.
 
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::mesh::generate::{
@@ -15,20 +15,20 @@ use crate::solids::rubber::steps::Stepping;
 use crate::solids::tangent::MassMatrix;
 use std::path::PathBuf;
 
-/// What a scene is about.
+/// Subject of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
-    /// Bearings, alone or with what they sit on and in.
+    /// Bearings, with or without bodies and housings.
     Assembly(Box<AssemblyScene>),
-    /// A solid by itself.
+    /// A solid alone.
     Solid(Box<SolidScene>),
 }
 
-/// Where the mesh comes from.
+/// Source of the mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshSource {
     File {
-        /// As the scene has it, and from the folder of the command.
+        /// As in the scene, and relative to the folder of the command.
         name: String,
         path: PathBuf,
         unit: LengthUnit,
@@ -52,19 +52,19 @@ pub enum MeshSource {
     Bushing(Bushing, BushingMesh),
 }
 
-/// Where a mesh is put.
+/// Position of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeshPlace {
-    /// Point of the mesh's own coordinates that comes to lie on the axis X, m.
+    /// Point of the mesh's own coordinates that is moved onto the axis X, m.
     pub origin: [f64; 3],
     /// Axis of the mesh that becomes X: 0, 1 or 2; the others follow in their order.
     pub axis: usize,
-    /// Where on X the point comes to lie, m.
+    /// Position of that point on X, m.
     pub at: f64,
 }
 
 impl MeshPlace {
-    /// Puts nodes in their place; those of a mesh that stays where it is keep their bits.
+    /// Moves nodes; those of a mesh that is not moved keep their bits.
     pub fn put(&self, nodes: &mut [[f64; 3]]) {
         if *self == MeshPlace::default() {
             return;
@@ -77,12 +77,12 @@ impl MeshPlace {
     }
 }
 
-/// The mesh as the scene asks for it.
+/// The mesh of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshRequest {
     pub source: MeshSource,
     pub place: MeshPlace,
-    /// `None` leaves a file's own.
+    /// `None`: as in the file.
     pub order: Option<Order>,
     pub renumber: bool,
     /// Repairs of a file's mesh. Duplicates are joined within the distance that finds them.
@@ -95,7 +95,7 @@ pub struct MeshRequest {
 }
 
 impl MeshRequest {
-    /// Whether forces, stiffness and energies are a quarter of those of the whole.
+    /// Returns whether forces, stiffness and energies are a quarter of those of the whole.
     pub fn is_quarter(&self) -> bool {
         matches!(&self.source, MeshSource::Bushing(_, cells) if cells.part == Part::Quarter)
     }
@@ -106,7 +106,7 @@ impl MeshRequest {
 pub struct SetRequest {
     pub name: String,
     pub place: SetPlace,
-    /// m; `None` for a part of the mesh's size.
+    /// m; `None` for a fraction of the mesh's size.
     pub tolerance: Option<f64>,
 }
 
@@ -116,7 +116,7 @@ pub enum SetPlace {
     Box { low: [f64; 3], high: [f64; 3] },
 }
 
-/// A set that is held or moved along some axes.
+/// A set that is fixed or moved along some axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Held {
     pub set: String,
@@ -138,7 +138,7 @@ pub enum LoadKind {
     Pressure(Profile),
 }
 
-/// Something whose mean displacement is written.
+/// A set or position whose mean displacement is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     pub name: String,
@@ -148,11 +148,11 @@ pub struct Probe {
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProbeOf {
     Set(String),
-    /// The node nearest to this place, m.
+    /// The node nearest to this position, m.
     Place([f64; 3]),
 }
 
-/// How a run is computed.
+/// Integration of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidRun {
     pub steps: RunSteps,
