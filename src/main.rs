@@ -23,7 +23,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Read a scene and say what was understood; solve nothing
+    /// Read a scene and print what was understood; solve nothing
     Check(check::Arguments),
     /// List what a solution of the scene computes, what it leaves out, and why
     Plan(plan::Arguments),

@@ -14,7 +14,7 @@ use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::ch3_bushing::dent::Dent;
-use crate::equilibrium::initial::given_speed;
+use crate::equilibrium::initial::prescribed_speed;
 use crate::members::connection::Connection;
 use crate::members::flexible_shaft::ElasticShaft;
 use crate::members::housing_fit::Seat;
@@ -101,8 +101,8 @@ impl Body {
     }
 
     /// Fixes the body at its rest position. A prescribed speed stays, since balls roll with it.
-    pub fn hold(&mut self) {
-        let turns = given_speed(self, 0.0) != 0.0;
+    pub fn fix(&mut self) {
+        let turns = prescribed_speed(self, 0.0) != 0.0;
         match &mut self.mobility {
             Mobility::Driven(race) if turns => {
                 race.drives = self.rest.map(|at| Drive::Motion(Profile::Constant(at)));
@@ -249,8 +249,8 @@ impl Assembly {
 
     /// Origin of X of a body, m: for a race that is a body of its own, its bearing's position.
     pub fn origin_of(&self, body: usize) -> f64 {
-        let sits = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
-        match self.bearings.iter().find(sits) {
+        let is_on_body = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
+        match self.bearings.iter().find(is_on_body) {
             Some(bearing) if self.bodies[body].label.is_none() => self.place_of(bearing),
             // A flexible body has the position of its centre of mass.
             _ if self.shafts.iter().any(|shaft| shaft.body == body) => self.bodies[body].rest[0],
@@ -319,10 +319,10 @@ impl Assembly {
 
     /// The assembly without solids, with every body in a solid fixed at its rest position: the part whose equilibrium
     /// is searched.
-    pub fn with_seats_held(&self) -> Assembly {
+    pub fn with_seats_fixed(&self) -> Assembly {
         let mut held = self.clone();
         for seat in held.seats.drain(..) {
-            held.bodies[seat.race.body].hold();
+            held.bodies[seat.race.body].fix();
         }
         held.solids.clear();
         held

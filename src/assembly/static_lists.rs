@@ -62,7 +62,7 @@ pub struct StaticSection {
 
 impl StaticAssembly<'_> {
     /// Attachment of a mount: on its section if the body is flexible.
-    pub fn hold_of(&self, mount: &Mount) -> Mount {
+    pub fn attachment_of(&self, mount: &Mount) -> Mount {
         let is_there = |body: &StaticBody| match &body.place {
             Place::Section(of) => {
                 self.shafts[of.shaft].body == mount.body && of.section.along == mount.along
@@ -87,7 +87,7 @@ pub struct StaticBody {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// Fixed at this pose.
-    Held(Pose),
+    Fixed(Pose),
     /// x, y, z (m), tilt_y, tilt_z (rad) are unknown or prescribed one by one.
     Loaded(Loaded),
     /// Part of a flexible body.
@@ -174,7 +174,7 @@ impl Loaded {
     }
 
     /// Prescribed value of coordinate `i`.
-    pub fn given(&self, i: usize) -> Option<f64> {
+    pub fn prescribed(&self, i: usize) -> Option<f64> {
         match self.conditions[i] {
             Condition::Displacement(value) => Some(value),
             Condition::Load(_) => None,

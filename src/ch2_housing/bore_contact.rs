@@ -222,7 +222,7 @@ pub fn contact(
 /// Splits nodes into those within `reach` (m) of touching and those beyond: as long as the motion
 /// of a far node, of the cylinder at its place, and the growth of the radius sum to less than
 /// `reach`, it cannot touch and need not be tested.
-pub fn split_by_reach(
+pub fn split_by_distance(
     cylinder: &Cylinder,
     frame: &Frame,
     nodes: &[ContactNode],

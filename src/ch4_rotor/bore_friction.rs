@@ -85,7 +85,7 @@ impl BoreFriction {
     /// Work is summed by the trapezium rule over the step, which is how central differences move what it is done
     /// on: the force times the motion along the surface is then the change of the energy and the heat less the work of
     /// the load, to rounding.
-    pub fn pull(
+    pub fn update(
         &self,
         before: &Spring,
         place: Vec3,

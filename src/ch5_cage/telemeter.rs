@@ -31,7 +31,7 @@ pub struct Telemeter {
     pub capacitance: f64,
     /// Of the loop on the cage and of the transceiver's, Ω.
     pub resistance: [f64; 2],
-    /// At which the signal is watched, Hz.
+    /// At which the signal is probes, Hz.
     pub frequency: f64,
 }
 

@@ -1,7 +1,7 @@
 //! `bearing check SCENE`.
 
 use super::check_mesh::MeshFile;
-use super::{Changes, CommandResult, Outcome, assembly, echo_run, say, solid};
+use super::{Changes, CommandResult, Outcome, assembly, echo_run, print, solid};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Document, Subject, resolve_subject};
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
 }
 
 /// Prints the resolved scene, its output, assumptions and defaults as JSON.
-pub fn say_json(
+pub fn print_json(
     mut echo: Value,
     output: Value,
     assumptions: &[Assumption],
@@ -46,7 +46,7 @@ pub fn say_json(
     for (name, notes) in echo_run::notes(assumptions, defaults) {
         echo[name] = notes;
     }
-    say(&pretty(&echo))?;
+    print(&pretty(&echo))?;
     Ok(Outcome::Done)
 }
 
@@ -54,7 +54,7 @@ pub fn say_json(
 pub type Line<'a> = dyn FnMut(&str, String) + 'a;
 
 /// Prints the resolved scene, one line each: title, bases, `lines`, defaults and assumptions.
-pub fn say_lines(
+pub fn print_lines(
     document: &Document,
     title: &Option<String>,
     lines: impl FnOnce(&mut Line),
@@ -78,5 +78,5 @@ pub fn say_lines(
     for assumption in assumptions {
         line("assumption", format!("{}: {}", assumption.name, assumption.text));
     }
-    say(&text)
+    print(&text)
 }

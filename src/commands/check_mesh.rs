@@ -1,6 +1,6 @@
 //! `bearing check SCENE --mesh FILE`: writes the meshes of a scene's solid or housings, with their sets.
 
-use super::{CommandResult, Outcome, say};
+use super::{CommandResult, Outcome, print};
 use bearing_dynamics::mesh::tet_mesh::TetMesh;
 use bearing_dynamics::mesh::write::{write_abaqus, write_gmsh};
 use bearing_dynamics::output::atomic::write_atomic;
@@ -67,7 +67,7 @@ impl MeshFile<'_> {
 }
 
 /// Prints the last lines of a check: the meshes written, if any.
-pub fn say_written(written: Option<String>) -> CommandResult {
-    written.map_or(Ok(()), |text| say(&text))?;
+pub fn print_written(written: Option<String>) -> CommandResult {
+    written.map_or(Ok(()), |text| print(&text))?;
     Ok(Outcome::Done)
 }

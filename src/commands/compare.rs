@@ -1,7 +1,7 @@
 //! `bearing compare REFERENCE CANDIDATE`.
 
-use super::{CommandResult, Outcome, say};
-use bearing_dynamics::output::compare::tolerance::{GivenTolerance, ToleranceClass};
+use super::{CommandResult, Outcome, print};
+use bearing_dynamics::output::compare::tolerance::{RequestedTolerance, ToleranceClass};
 use bearing_dynamics::output::compare::{Options, compare, report, to_json};
 use bearing_dynamics::output::pack::{MANIFEST, PackError, RESOLVED, verify_pack};
 use bearing_dynamics::output::results::pretty;
@@ -77,13 +77,14 @@ fn refuse_corrupt_pack(reference: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
-    let given = (arguments.rtol.is_some() || !arguments.atol.is_empty()).then(|| GivenTolerance {
-        scale_relative: arguments.rtol.unwrap_or(0.0),
-        floors: arguments.atol.clone(),
-    });
+    let given =
+        (arguments.rtol.is_some() || !arguments.atol.is_empty()).then(|| RequestedTolerance {
+            scale_relative: arguments.rtol.unwrap_or(0.0),
+            floors: arguments.atol.clone(),
+        });
     let options = Options { default_class: arguments.class, tolerances: None, given };
     refuse_corrupt_pack(&arguments.reference)?;
     let comparison = compare(&arguments.reference, &arguments.candidate, &options)?;
-    say(&if arguments.json { pretty(&to_json(&comparison)) } else { report(&comparison) })?;
+    print(&if arguments.json { pretty(&to_json(&comparison)) } else { report(&comparison) })?;
     Ok(if comparison.equal { Outcome::Done } else { Outcome::Different })
 }

@@ -1,9 +1,9 @@
 //! Earlier contents of a results folder: what a command may replace, and its removal.
 
-use super::{pictures, say};
+use super::{pictures, print};
 use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::fields;
-use bearing_dynamics::output::folder::{Holds, ResultsFolder, claim, holds};
+use bearing_dynamics::output::folder::{FolderContent, ResultsFolder, claim, holds};
 use bearing_dynamics::output::json;
 use bearing_dynamics::output::state::arrays::remove_arrays;
 use std::error::Error;
@@ -26,7 +26,7 @@ pub enum Writes {
 pub fn claimed(path: &Path, writes: Writes) -> Result<ResultsFolder, Box<dyn Error>> {
     let folder = claim(path)?;
     if !folder.locked {
-        say(&format!(
+        print(&format!(
             "note: {} cannot be locked on this file system; let no second command write there\n",
             folder.display()
         ))?;
@@ -38,14 +38,16 @@ pub fn claimed(path: &Path, writes: Writes) -> Result<ResultsFolder, Box<dyn Err
 /// Returns an error if the folder holds results of another command, or files of another program.
 fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
     let found = match (holds(folder)?, writes) {
-        (Holds::Nothing, _)
-        | (Holds::Run, Writes::Run { .. })
-        | (Holds::Sweep, Writes::Sweep)
-        | (Holds::Pack, Writes::Pack)
-        | (Holds::Results(_), Writes::Run { fresh: true }) => return Ok(()),
-        (Holds::Results(kind), Writes::Statics) if kind.starts_with("static") => return Ok(()),
-        (Holds::Results(kind), Writes::Modes) if kind.contains("modes") => return Ok(()),
-        (Holds::Results(kind), Writes::Run { fresh: false }) => {
+        (FolderContent::Nothing, _)
+        | (FolderContent::Run, Writes::Run { .. })
+        | (FolderContent::Sweep, Writes::Sweep)
+        | (FolderContent::Pack, Writes::Pack)
+        | (FolderContent::Results(_), Writes::Run { fresh: true }) => return Ok(()),
+        (FolderContent::Results(kind), Writes::Statics) if kind.starts_with("static") => {
+            return Ok(());
+        }
+        (FolderContent::Results(kind), Writes::Modes) if kind.contains("modes") => return Ok(()),
+        (FolderContent::Results(kind), Writes::Run { fresh: false }) => {
             return Err(format!(
                 "{} holds results of another kind ({kind}); name another folder with --out, or write \
                  over them (--fresh)",
@@ -53,16 +55,16 @@ fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
             )
             .into());
         }
-        (Holds::Results(kind), _) => format!("results of another kind ({kind})"),
-        (Holds::Run, _) => "a run".to_string(),
-        (Holds::Sweep, _) => "a sweep".to_string(),
-        (Holds::Pack, _) => "a case pack".to_string(),
+        (FolderContent::Results(kind), _) => format!("results of another kind ({kind})"),
+        (FolderContent::Run, _) => "a run".to_string(),
+        (FolderContent::Sweep, _) => "a sweep".to_string(),
+        (FolderContent::Pack, _) => "a case pack".to_string(),
     };
     Err(format!("{} holds {found}; name another folder with --out", folder.display()).into())
 }
 
 /// Returns an error if the folder holds an unfinished run.
-pub fn refuse_half_way(folder: &Path) -> Result<(), Box<dyn Error>> {
+pub fn refuse_unfinished_run(folder: &Path) -> Result<(), Box<dyn Error>> {
     let state = json::read(&folder.join("state.json")).unwrap_or_default();
     // Earlier versions wrote the state of a bearing in a housing one level deeper.
     let of = if state["bearing"]["stopped"].is_string() { &state["bearing"] } else { &state };

@@ -64,7 +64,7 @@ impl Changes {
     /// Reads the scene and replaces its keys; prints a note for each key that this removes.
     pub fn read(&self, scene: &Path) -> Result<Document, Box<dyn Error>> {
         let (document, notes) = self.read_quietly(scene)?;
-        notes.iter().try_for_each(|note| say(&format!("note: {note}\n")))?;
+        notes.iter().try_for_each(|note| print(&format!("note: {note}\n")))?;
         Ok(document)
     }
 
@@ -119,7 +119,7 @@ pub fn reach(
     given: &str,
     key: &str,
 ) -> Result<Option<String>, Box<dyn Error>> {
-    let (own, nothing) = document.out_of_reach(key);
+    let (own, nothing) = document.outside_range(key);
     let table = key.split('.').next().unwrap_or_default();
     let named = |name: &String| format!("[{table}.{name}]");
     let all = own.iter().map(named).collect::<Vec<_>>().join(", ");
@@ -144,7 +144,7 @@ pub fn reach(
 
 /// Writes to standard output, with terminal control characters made visible. A closed pipe
 /// (`bearing … | head`) is no error.
-pub fn say(text: &str) -> Result<(), Box<dyn Error>> {
+pub fn print(text: &str) -> Result<(), Box<dyn Error>> {
     match std::io::stdout().lock().write_all(visible(text).as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(format!("cannot write to standard output: {error}").into())

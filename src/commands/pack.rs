@@ -3,7 +3,7 @@
 use super::assembly::statics::find_equilibrium;
 use super::earlier::{Writes, claimed};
 use super::sweep::housings::mesh_files;
-use super::{CommandResult, Outcome, say};
+use super::{CommandResult, Outcome, print};
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
 use bearing_dynamics::output::pack::{PackInput, refuse_foreign_files, write_pack};
 use bearing_dynamics::scene::{Document, Subject, resolve, resolve_subject};
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         ""
     };
     let count = manifest.sha256.len() + 1;
-    say(&format!("wrote {count} files to {}{of_run}\n", folder.display()))?;
+    print(&format!("wrote {count} files to {}{of_run}\n", folder.display()))?;
     Ok(Outcome::Done)
 }
 

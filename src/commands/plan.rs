@@ -1,6 +1,6 @@
 //! `bearing plan SCENE`.
 
-use super::{Changes, CommandResult, assembly, say, solid};
+use super::{Changes, CommandResult, assembly, print, solid};
 use bearing_dynamics::assembly::plan::Item;
 use bearing_dynamics::scene::{Subject, resolve_subject};
 use std::error::Error;
@@ -22,7 +22,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-pub fn say_plan(items: &[Item], notes: &[String]) -> Result<(), Box<dyn Error>> {
-    items.iter().try_for_each(|item| say(&format!("{item}\n")))?;
-    notes.iter().try_for_each(|line| say(&format!("{line}\n")))
+pub fn print_plan(items: &[Item], notes: &[String]) -> Result<(), Box<dyn Error>> {
+    items.iter().try_for_each(|item| print(&format!("{item}\n")))?;
+    notes.iter().try_for_each(|line| print(&format!("{line}\n")))
 }

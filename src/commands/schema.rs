@@ -1,6 +1,6 @@
 //! `bearing schema`.
 
-use super::{CommandResult, Outcome, say};
+use super::{CommandResult, Outcome, print};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::json_schema;
 use bearing_dynamics::scene::tables::manual::reference_markdown;
@@ -14,6 +14,6 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let text = if arguments.manual { reference_markdown() } else { pretty(&json_schema()) };
-    say(&text)?;
+    print(&text)?;
     Ok(Outcome::Done)
 }

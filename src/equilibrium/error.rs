@@ -12,7 +12,7 @@ pub enum StaticsError {
          ({travel:.3e} m, farther than the {room:.3e} m it has); nothing holds it \
          against the load in this direction, or not against so much of it: hold the coordinate by a displacement or a spring{start}, turn the load or take less of it, \
          or start a motion in nominal positions (numerics.start = \"nominal\")",
-        start = no_hold(coordinate)
+        start = unsupported(coordinate)
     )]
     NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
     #[error(
@@ -59,7 +59,7 @@ pub enum StaticsError {
 }
 
 /// A length instead of a displacement is a frequent slip.
-fn no_hold(coordinate: &str) -> String {
+fn unsupported(coordinate: &str) -> String {
     let (kind, unit) =
         if coordinate.starts_with("tilt") { ("tilt", "deg") } else { ("displacement", "mm") };
     format!(

@@ -5,7 +5,7 @@ use crate::assembly::lists::{Assembly, Bearing, Body};
 use crate::assembly::static_lists::{Place, StaticAssembly, StaticBearing};
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::equilibrium::bearing_tables::BearingState;
-use crate::equilibrium::initial::{given_angle, given_speed, is_held, race_speeds};
+use crate::equilibrium::initial::{is_fixed, prescribed_angle, prescribed_speed, race_speeds};
 use crate::equilibrium::sections::unbalance_loads;
 use crate::equilibrium::statics::{AssemblySolution, Condition, StaticsError};
 use crate::kinematics::euler::{about, quaternion};
@@ -143,7 +143,7 @@ impl<'a> FollowerLoadRounds<'a> {
                 continue;
             }
             let body = &self.assembly.bodies[of.body];
-            let next = of.dragged(given_speed(body, self.t), amplitudes);
+            let next = of.dragged(prescribed_speed(body, self.t), amplitudes);
             let bends = most(&mut amplitudes.iter().zip(&shaft.springs).map(|(a, w)| a * w));
             let old = dragged.iter().copied().chain(std::iter::repeat(0.0));
             let changed = most(&mut next.iter().zip(old).map(|(new, old)| new - old));
@@ -181,15 +181,15 @@ impl<'a> FollowerLoadRounds<'a> {
 }
 
 fn unbalanced(body: &Body, t: f64) -> bool {
-    let speed = given_speed(body, t);
+    let speed = prescribed_speed(body, t);
     body.unbalance * speed * speed != 0.0
 }
 
 /// Centrifugal force of an unbalance on x, y and z with the body at these tilts.
 fn unbalance(body: &Body, t: f64, [xi, lambda]: [f64; 2]) -> Five {
-    let speed = given_speed(body, t);
+    let speed = prescribed_speed(body, t);
     let size = body.unbalance * speed * speed;
-    let turned = about(Vector3::x(), given_angle(body, t)) * Vector3::y();
+    let turned = about(Vector3::x(), prescribed_angle(body, t)) * Vector3::y();
     let along = about(Vector3::y(), xi) * about(Vector3::z(), lambda) * turned;
     Five::from([size * along.x, size * along.y, size * along.z, 0.0, 0.0])
 }
@@ -229,7 +229,7 @@ impl FollowerLoads {
         for ((bearing, StaticBearing { mounts, .. }), state) in bearings {
             let [inner, outer] = race_speeds(assembly, bearing, t);
             let rolls = inner != outer && bearing.traction != TractionLaw::None;
-            let moves = !is_held(&assembly.bodies[bearing.mounts[1].body]);
+            let moves = !is_fixed(&assembly.bodies[bearing.mounts[1].body]);
             if !(rolls || moves) {
                 continue;
             }

@@ -64,7 +64,7 @@ pub(crate) fn at(
     let mut rounds = 0;
     loop {
         let mut found = search(&following.loaded(&plain), near.as_deref(), &options)?;
-        put_given(assembly, t, &mut found);
+        impose_prescribed(assembly, t, &mut found);
         bend(&mut plain, &found);
         if following.follow(&plain, &found, options.tolerance) {
             return Ok(found);
@@ -98,9 +98,9 @@ fn search(
 }
 
 /// Replaces prescribed coordinates by their exact values, without the rounding of a pose.
-fn put_given(assembly: &Assembly, t: f64, found: &mut Equilibrium) {
+fn impose_prescribed(assembly: &Assembly, t: f64, found: &mut Equilibrium) {
     for (coordinates, body) in found.coordinates.iter_mut().zip(&assembly.bodies) {
-        if let Some(at) = body.driven().and_then(|race| all_given(race, t)) {
+        if let Some(at) = body.driven().and_then(|race| all_prescribed(race, t)) {
             *coordinates = at.into();
         }
     }
@@ -109,8 +109,8 @@ fn put_given(assembly: &Assembly, t: f64, found: &mut Equilibrium) {
 /// Coordinates as far as they are prescribed.
 fn given(assembly: &StaticAssembly) -> Vec<Five> {
     let of = |body: &StaticBody| match &body.place {
-        Place::Held(_) | Place::Section(_) => Five::zeros(),
-        Place::Loaded(loaded) => Five::from_fn(|i, _| loaded.given(i).unwrap_or(0.0)),
+        Place::Fixed(_) | Place::Section(_) => Five::zeros(),
+        Place::Loaded(loaded) => Five::from_fn(|i, _| loaded.prescribed(i).unwrap_or(0.0)),
     };
     assembly.bodies.iter().map(of).collect()
 }
@@ -127,15 +127,15 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
     let bodies = assembly.bodies.iter().enumerate().map(|(index, body)| {
         let rest = &body.rest;
         let place = match body.driven() {
-            None => held_at(rest),
-            Some(race) if let Some(at) = all_given(race, t) => held_at(&at),
+            None => fixed_at(rest),
+            Some(race) if let Some(at) = all_prescribed(race, t) => fixed_at(&at),
             Some(race) => {
                 // A race with a fixed partner is searched in the direction of its load.
                 let alone = !carries_outer(index)
                     && assembly.bearings.len() == 1
                     && rest[0] == 0.0
                     && assembly.bearings[0].mounts.iter().all(Mount::is_direct)
-                    && is_held(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
+                    && is_fixed(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
                 Place::Loaded(Loaded {
                     axes: None,
                     conditions: conditions(assembly, body, race, t),
@@ -187,15 +187,15 @@ pub fn conditions(assembly: &Assembly, body: &Body, race: &DrivenBody, t: f64) -
     })
 }
 
-fn held_at(at: &[f64; 5]) -> Place {
-    Place::Held(Pose {
+fn fixed_at(at: &[f64; 5]) -> Place {
+    Place::Fixed(Pose {
         position: Vector3::new(at[0], at[1], at[2]),
         orientation: quaternion(0.0, at[3], at[4]),
     })
 }
 
 /// Coordinates of a body if all are prescribed.
-fn all_given(race: &DrivenBody, t: f64) -> Option<[f64; 5]> {
+fn all_prescribed(race: &DrivenBody, t: f64) -> Option<[f64; 5]> {
     let mut at = [0.0; 5];
     for (at, drive) in at.iter_mut().zip(&race.drives) {
         let Drive::Motion(profile) = drive else { return None };
@@ -205,12 +205,12 @@ fn all_given(race: &DrivenBody, t: f64) -> Option<[f64; 5]> {
 }
 
 /// Returns whether a body has no unknown.
-pub(crate) fn is_held(body: &Body) -> bool {
-    body.driven().is_none_or(|race| all_given(race, 0.0).is_some())
+pub(crate) fn is_fixed(body: &Body) -> bool {
+    body.driven().is_none_or(|race| all_prescribed(race, 0.0).is_some())
 }
 
 /// Prescribed speed of a body about its own axis at `t`, rad/s; zero for a torque drive or a fixed body.
-pub fn given_speed(body: &Body, t: f64) -> f64 {
+pub fn prescribed_speed(body: &Body, t: f64) -> f64 {
     match body.driven().map(|race| &race.rotation) {
         Some(Rotation::Speed(profile)) => profile.value(t),
         Some(Rotation::Torque(_)) | None => 0.0,
@@ -218,7 +218,7 @@ pub fn given_speed(body: &Body, t: f64) -> f64 {
 }
 
 /// Angle of the prescribed rotation of a body since t = 0, rad.
-pub(crate) fn given_angle(body: &Body, t: f64) -> f64 {
+pub(crate) fn prescribed_angle(body: &Body, t: f64) -> f64 {
     match body.driven().map(|race| &race.rotation) {
         Some(Rotation::Speed(profile)) => profile.integral(t),
         Some(Rotation::Torque(_)) | None => 0.0,
@@ -227,7 +227,7 @@ pub(crate) fn given_angle(body: &Body, t: f64) -> f64 {
 
 /// Prescribed speeds of both races of a bearing about the bearing's axis, rad/s.
 pub(crate) fn race_speeds(assembly: &Assembly, bearing: &Bearing, t: f64) -> [f64; 2] {
-    of_races(assembly, bearing, |body| given_speed(body, t))
+    of_races(assembly, bearing, |body| prescribed_speed(body, t))
 }
 
 /// A value of both races about the bearing's axis.
@@ -245,7 +245,7 @@ pub(crate) fn orbital_speed(assembly: &Assembly, bearing: &Bearing, t: f64) -> f
 
 /// Angle of the ball set about the bearing's axis by pure rolling since t = 0, rad.
 pub fn orbital_angle(assembly: &Assembly, bearing: &Bearing, t: f64) -> f64 {
-    rolled(bearing, of_races(assembly, bearing, |body| given_angle(body, t)))
+    rolled(bearing, of_races(assembly, bearing, |body| prescribed_angle(body, t)))
 }
 
 /// Rotation of the ball set from those of the inner and the outer race.

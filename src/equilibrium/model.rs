@@ -54,7 +54,7 @@ fn origin(assembly: &StaticAssembly, bearing: &StaticBearing) -> Vector3<f64> {
         return Vector3::zeros();
     }
     match &assembly.bodies[outer.body].place {
-        Place::Held(pose) => pose.position + pose.orientation * Vector3::x() * outer.along,
+        Place::Fixed(pose) => pose.position + pose.orientation * Vector3::x() * outer.along,
         Place::Loaded(loaded) => {
             let [x, y, z, ..] = loaded.start.unwrap_or(loaded.rest);
             loaded.axes().point_to_parent(&Vector3::new(x + outer.along, y, z))
@@ -80,7 +80,7 @@ fn on_section_of(assembly: &StaticAssembly, body: usize) -> Option<f64> {
 }
 
 /// Largest displacement of the sections of a shaft per unit of each amplitude.
-fn reaches(assembly: &StaticAssembly, shaft: usize) -> Vec<f64> {
+fn amplitude_scales(assembly: &StaticAssembly, shaft: usize) -> Vec<f64> {
     let of = &assembly.shafts[shaft];
     let mut reach = vec![0.0f64; of.springs.len()];
     for body in &assembly.bodies {
@@ -101,12 +101,12 @@ impl<'a> Model<'a> {
         let mut scale = Vec::new();
         for (index, body) in assembly.bodies.iter().enumerate() {
             unknowns.push(match body.place {
-                Place::Held(_) | Place::Section(_) => None,
+                Place::Fixed(_) | Place::Section(_) => None,
                 Place::Loaded(_) => {
-                    let sits = |bearing: &&StaticBearing| {
+                    let is_on_body = |bearing: &&StaticBearing| {
                         bearing.mounts.iter().any(|mount| mount.body == index)
                     };
-                    let own = assembly.bearings.iter().find(sits);
+                    let own = assembly.bearings.iter().find(is_on_body);
                     let seat = assembly.seats.iter().find(|seat| seat.mount.body == index);
                     let pitch = match (own, seat) {
                         (Some(bearing), _) => bearing.geometry.pitch_radius,
@@ -121,7 +121,7 @@ impl<'a> Model<'a> {
         let mut shafts = Vec::with_capacity(assembly.shafts.len());
         for shaft in 0..assembly.shafts.len() {
             shafts.push(scale.len());
-            scale.extend(reaches(assembly, shaft));
+            scale.extend(amplitude_scales(assembly, shaft));
         }
         let mut coordinates = scale.len();
         for (first, body) in unknowns.iter_mut().zip(&assembly.bodies) {
@@ -142,7 +142,7 @@ impl<'a> Model<'a> {
                 origin: origin(assembly, bearing),
                 planes: Vec::new(),
             };
-            if let Place::Held(pose) = &assembly.bodies[bearing.mounts[1].body].place {
+            if let Place::Fixed(pose) = &assembly.bodies[bearing.mounts[1].body].place {
                 let mut held = Vec::with_capacity(of.azimuths.len());
                 planes(bearing, &of, pose, &mut held);
                 of.planes = held;
@@ -153,7 +153,7 @@ impl<'a> Model<'a> {
         let seat_axes = assembly.seats.iter().map(|seat| {
             let axes = match &assembly.bodies[seat.mount.body].place {
                 Place::Loaded(loaded) => loaded.axes(),
-                Place::Held(_) | Place::Section(_) => Pose::identity(),
+                Place::Fixed(_) | Place::Section(_) => Pose::identity(),
             };
             axes.relative_to(&seat.nominal)
         });
@@ -224,7 +224,7 @@ impl<'a> Model<'a> {
             (Place::Loaded(_) | Place::Section(_), Some(first)) => {
                 at.fixed_rows::<5>(first).into_owned()
             }
-            (Place::Held(pose), _) => five(pose),
+            (Place::Fixed(pose), _) => five(pose),
             _ => Five::zeros(),
         }
     }
@@ -233,7 +233,7 @@ impl<'a> Model<'a> {
     pub(crate) fn axes(&self, body: usize) -> Option<&Pose> {
         match &self.assembly.bodies[body].place {
             Place::Loaded(loaded) => loaded.axes.as_deref(),
-            Place::Held(_) => None,
+            Place::Fixed(_) => None,
             Place::Section(of) => self.axes(self.assembly.shafts[of.shaft].body),
         }
     }

@@ -13,7 +13,7 @@ use crate::ch2_housing::bore_contact::Penalty;
 use crate::equilibrium::initial::{conditions, orbital_angle, static_assembly};
 use crate::equilibrium::statics::{AssemblySolution, Condition, StaticsError};
 use crate::equilibrium::warm_started_search::{
-    CourseMemory, WarmStartedSearch, load_of_balls, unbalanced,
+    SearchMemory, WarmStartedSearch, load_of_balls, unbalanced,
 };
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
@@ -228,7 +228,7 @@ impl<'b> QuasiStaticProblem<'b> {
         let of = |(index, (still, body)): (usize, (&StaticBody, &Body))| {
             let Place::Loaded(loaded) = &still.place else { return None };
             let race = body.driven()?;
-            let mut free = [0, 1, 2, 3, 4].map(|i| loaded.given(i).is_none());
+            let mut free = [0, 1, 2, 3, 4].map(|i| loaded.prescribed(i).is_none());
             free[0] &= !matches!(race.drives[0], Drive::Load(Profile::Constant(_)));
             Some(MovingBody { body: index, inertia: race.inertia, free })
         };
@@ -277,7 +277,7 @@ pub struct QuasiStaticCheckpoint {
     pub time: f64,
     pub found: u64,
     pub effort: Effort,
-    pub memory: CourseMemory,
+    pub memory: SearchMemory,
     /// Number of nodes of each bore.
     pub nodes: Vec<usize>,
 }

@@ -77,7 +77,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut springs = Vec::new();
         for (_, first, body) in model.loaded() {
             for i in 0..5 {
-                if body.given(i).is_none() {
+                if body.prescribed(i).is_none() {
                     loads[first + i] = body.load(i);
                     free[first + i] = true;
                 }
@@ -154,7 +154,7 @@ impl<'a, 'b> Search<'a, 'b> {
     pub(crate) fn impose(&self, at: &mut DVector<f64>) {
         for (_, first, body) in self.model.loaded() {
             for i in 0..5 {
-                if let Some(value) = body.given(i) {
+                if let Some(value) = body.prescribed(i) {
                     at[first + i] = value;
                 }
             }
@@ -168,7 +168,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let Some(bearing) = bearing else { return Five::zeros() };
         let outer = &self.model.assembly.bodies[bearing.mounts[1].body].place;
         let origin = match outer {
-            Place::Held(pose) => loaded.axes().point_to_body(&pose.position),
+            Place::Fixed(pose) => loaded.axes().point_to_body(&pose.position),
             Place::Loaded(under) => {
                 let [x, y, z, ..] = under.start.unwrap_or([0.0; 5]);
                 let there = under.axes().point_to_parent(&Vector3::new(x, y, z));
@@ -274,7 +274,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Largest pitch radius, or distance of a section from its body's centre, m.
-    fn reach(&self) -> f64 {
+    fn lever(&self) -> f64 {
         let StaticAssembly { bearings, bodies, .. } = self.model.assembly;
         let along = bodies.iter().filter_map(|body| match &body.place {
             Place::Section(of) => Some(of.section.along.abs()),
@@ -296,7 +296,7 @@ impl<'a, 'b> Search<'a, 'b> {
     fn allowed(&self, here: &Evaluation) -> f64 {
         let applied = self.applied();
         // Rounding of positions (some ulps of the pitch radius) times the stiffness remains.
-        let noise = 8.0 * f64::EPSILON * self.reach() * here.stiffest + here.seat_noise;
+        let noise = 8.0 * f64::EPSILON * self.lever() * here.stiffest + here.seat_noise;
         self.options.tolerance * applied.max(here.largest_ball_load) + noise
     }
 

@@ -5,7 +5,7 @@ use crate::assembly::mount::Mount;
 use crate::assembly::static_lists::{
     Place, StaticAssembly, StaticBody, StaticSection, StaticShaft,
 };
-use crate::equilibrium::initial::{given_angle, given_speed};
+use crate::equilibrium::initial::{prescribed_angle, prescribed_speed};
 use crate::kinematics::euler::{about, quaternion};
 use crate::members::flexible_shaft::{Section, Unbalance};
 use nalgebra::{SVector, Vector3};
@@ -22,12 +22,12 @@ pub(crate) fn add(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
             place: Place::Section(Box::new(StaticSection { shaft: index, section, loads })),
         };
         for (at, mount) in mounts(assembly) {
-            if mount.body == shaft.body && still.hold_of(&mount) == mount {
+            if mount.body == shaft.body && still.attachment_of(&mount) == mount {
                 let section = shaft.shapes.section(mount.along);
                 still.bodies.push(place(&at, section, [0.0; 5]));
             }
         }
-        for (at, section) in &shaft.watched {
+        for (at, section) in &shaft.probes {
             still.bodies.push(place(at, section.clone(), [0.0; 5]));
         }
         for load in &shaft.loads {
@@ -42,7 +42,7 @@ pub(crate) fn add(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
     let mut connections = std::mem::take(&mut still.connections);
     let mounts = bearings.iter_mut().flat_map(|bearing| &mut bearing.mounts);
     let mounts = mounts.chain(connections.iter_mut().flat_map(|joint| &mut joint.ends));
-    mounts.for_each(|mount| *mount = still.hold_of(mount));
+    mounts.for_each(|mount| *mount = still.attachment_of(mount));
     (still.bearings, still.connections) = (bearings, connections);
 }
 
@@ -90,9 +90,9 @@ pub(crate) fn unbalance_loads(
 ) -> Vec<(usize, Five)> {
     let load = |(body, unbalance, spins): (usize, &Unbalance, usize)| {
         let spins = &assembly.bodies[spins];
-        let speed = given_speed(spins, t);
+        let speed = prescribed_speed(spins, t);
         let size = unbalance.size * speed * speed;
-        let angle = unbalance.angle + given_angle(spins, t);
+        let angle = unbalance.angle + prescribed_angle(spins, t);
         let turned = about(Vector3::x(), angle) * Vector3::y();
         let along = quaternion(0.0, at[body][3], at[body][4]) * turned * size;
         (size != 0.0).then(|| (body, Five::from([along.x, along.y, along.z, 0.0, 0.0])))

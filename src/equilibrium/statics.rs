@@ -221,7 +221,7 @@ impl StaticProblem {
         StaticAssembly {
             bodies: vec![
                 body("the inner race", Place::Loaded(inner)),
-                body("the outer race", Place::Held(self.outer_pose.relative_to(&self.frame))),
+                body("the outer race", Place::Fixed(self.outer_pose.relative_to(&self.frame))),
             ],
             bearings: vec![bearing],
             ..StaticAssembly::default()
@@ -308,7 +308,7 @@ fn unload<'b>(
         let mut loaded = assembly.clone();
         for body in &mut loaded.bodies {
             match &mut body.place {
-                Place::Held(_) => {}
+                Place::Fixed(_) => {}
                 Place::Section(of) => of.loads = of.loads.map(|load| load * factor),
                 Place::Loaded(body) => {
                     for condition in &mut body.conditions {

@@ -104,7 +104,8 @@ impl Search<'_, '_> {
             if self.model.seat_of(index).is_some() {
                 continue;
             }
-            let from = Five::from(body.start.unwrap_or([0.0; 5])) + self.carried(index, here);
+            let from =
+                Five::from(body.start.unwrap_or([0.0; 5])) + self.partner_displacement(index, here);
             for i in (0..5).filter(|&i| self.free[first + i]) {
                 let travel = (here.at[first + i] - from[i]) * self.model.scale[first + i];
                 // NaN must fail.
@@ -117,7 +118,7 @@ impl Search<'_, '_> {
                         travel,
                         room: match &body.place {
                             Place::Loaded(loaded) => loaded.room,
-                            Place::Held(_) | Place::Section(_) => 0.0,
+                            Place::Fixed(_) | Place::Section(_) => 0.0,
                         },
                     });
                 }
@@ -206,13 +207,13 @@ impl Search<'_, '_> {
     fn whole(&self, body: usize) -> usize {
         match &self.model.assembly.bodies[body].place {
             Place::Section(of) => self.model.assembly.shafts[of.shaft].body,
-            Place::Held(_) | Place::Loaded(_) => body,
+            Place::Fixed(_) | Place::Loaded(_) => body,
         }
     }
 
     /// Displacement of the body under a body's first outer race, which moves the inner race along; of a fixed one,
     /// zero.
-    fn carried(&self, body: usize, here: &Evaluation) -> Five {
+    fn partner_displacement(&self, body: usize, here: &Evaluation) -> Five {
         let on_it = |bearing: &&StaticBearing| self.whole(bearing.mounts[0].body) == body;
         let bearing = self.model.assembly.bearings.iter().find(on_it);
         let under = bearing.map(|bearing| self.whole(bearing.mounts[1].body));
@@ -220,7 +221,7 @@ impl Search<'_, '_> {
         if let Some(under) = under.filter(|_| is_race)
             && let Place::Loaded(of) = &self.model.assembly.bodies[body].place
             && of.start.is_none()
-            && let Place::Held(pose) = &self.model.assembly.bodies[under].place
+            && let Place::Fixed(pose) = &self.model.assembly.bodies[under].place
         {
             let [x, y, z] = of.axes().point_to_body(&pose.position).into();
             return Five::from([x, y, z, 0.0, 0.0]);

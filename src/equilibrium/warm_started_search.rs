@@ -27,7 +27,7 @@ pub struct WarmStartedSearch<'b> {
 
 /// State from which a search continues with the same bits.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct CourseMemory {
+pub struct SearchMemory {
     /// x, y, z (m), tilts (rad) of each body; `None` before the first solution.
     pub places: Option<Vec<[f64; 5]>>,
     /// Contact nodes of each bore, ascending.
@@ -64,10 +64,10 @@ impl<'b> WarmStartedSearch<'b> {
         self.near = places.map(<[_]>::to_vec);
     }
 
-    pub fn memory(&self) -> CourseMemory {
+    pub fn memory(&self) -> SearchMemory {
         let places = self.near.as_ref().map(|near| near.iter().map(|at| (*at).into()).collect());
         let touching = self.bores.iter().map(|bore| bore.touching().to_vec()).collect();
-        CourseMemory { places, touching }
+        SearchMemory { places, touching }
     }
 
     /// Continues from the memory of a search in the same bores.
@@ -75,7 +75,7 @@ impl<'b> WarmStartedSearch<'b> {
     /// # Errors
     ///
     /// See [`BoreSearch::recall`].
-    pub fn recall(&mut self, memory: &CourseMemory) -> Result<(), BoreError> {
+    pub fn recall(&mut self, memory: &SearchMemory) -> Result<(), BoreError> {
         let places = memory.places.as_ref();
         self.near = places.map(|places| places.iter().map(|at| SVector::from(*at)).collect());
         let mut bores = self.bores.iter_mut().zip(&memory.touching);

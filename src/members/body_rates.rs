@@ -53,7 +53,7 @@ impl System {
                     own.add(Stage::Impulses, 1);
                 }
                 let rest = steps.foundation.then_some(&body.rest);
-                if steps.swings {
+                if steps.unbalance_coupled {
                     let bent = bent_of(&self.assembly, &self.shafts, index, state);
                     let pushes = match bent {
                         Some((at, (shaft, _))) => {
@@ -63,10 +63,10 @@ impl System {
                     };
                     let bent = bent.map(|(_, bent)| bent);
                     let gravity = self.assembly.gravity;
-                    self.swing.update((body, now), bent, gravity, pushes, &mut loads);
+                    self.unbalance_coupling.update((body, now), bent, gravity, pushes, &mut loads);
                     let mut uncounted = Counts::default();
                     let free = rigid_body::rates(driven, t, now, rest, &loads, &mut uncounted);
-                    self.swing.add_to((driven, now), &free, pushes, &mut loads);
+                    self.unbalance_coupling.add_to((driven, now), &free, pushes, &mut loads);
                 }
                 let result = rigid_body::rates(driven, t, now, rest, &loads, own);
                 ledger[Ledger::Drives as usize] += result.drive_power;

@@ -91,7 +91,7 @@ pub const ROWS: usize = 6;
 impl Connection {
     /// Forces on both ends, with the elongations of its Maxwell elements (m, rad; six for each element); empty for
     /// relaxed elements.
-    pub fn pull(&self, ends: [&BodyKinematics; 2], elongated: &[f64]) -> SpringForces {
+    pub fn forces(&self, ends: [&BodyKinematics; 2], elongated: &[f64]) -> SpringForces {
         match &self.law {
             Law::SpringDashpot(law) => spring_dashpot(law, ends, elongated),
             Law::Torsion(law) => torsion(law, ends),
@@ -221,7 +221,7 @@ fn rates(ends: [&BodyKinematics; 2], axes: &[Vec3; 3]) -> (Vec3, Vector3<f64>) {
     (along(sub(second.velocity, carried)), along(sub(second.spin, first.spin)).into())
 }
 
-/// See [`Connection::pull`].
+/// See [`Connection::forces`].
 pub fn spring_dashpot(
     law: &SpringDashpot,
     ends: [&BodyKinematics; 2],

@@ -78,14 +78,14 @@ impl DentOnRace {
 }
 
 /// A ball relative to a race.
-struct Seen {
+struct Observed {
     /// Direction from the race's axis to the ball along its own Y and Z, unit vector.
     across: [f64; 2],
     /// Angle around the groove from its bottom towards X, rad.
     groove_angle: f64,
 }
 
-impl Seen {
+impl Observed {
     /// Position relative to a dent along the rolling direction and across the groove, m; `None` on the other side of
     /// the race.
     fn from(&self, dent: &DentOnRace) -> Option<[f64; 2]> {
@@ -104,7 +104,7 @@ impl Seen {
 fn sum_of(
     dents: &[DentOnRace],
     side: usize,
-    seen: &Seen,
+    seen: &Observed,
     approach: f64,
     scales: [f64; 2],
 ) -> Option<Lost> {
@@ -182,7 +182,7 @@ pub(crate) fn apply(
             // Components of the normal towards X and towards the groove's bottom.
             let (sine, cosine) =
                 (dot(contact.normal, axis), law.outward * dot(contact.normal, contact.outward));
-            let seen = Seen {
+            let seen = Observed {
                 across: own.map(|direction| dot(direction, arm)),
                 groove_angle: libm::atan2(sine, cosine),
             };

@@ -46,7 +46,7 @@ pub struct ElasticShaft {
     pub loads: Vec<ShaftLoad>,
     pub unbalances: Vec<Unbalance>,
     /// Recorded sections, by name.
-    pub watched: Vec<(String, Section)>,
+    pub probes: Vec<(String, Section)>,
 }
 
 /// Modes at one position along a shaft.
@@ -250,7 +250,7 @@ impl ElasticShaft {
     pub fn sections(&self) -> impl Iterator<Item = &Section> {
         let loads = self.loads.iter().map(|load| &load.section);
         let unbalances = self.unbalances.iter().map(|unbalance| &unbalance.section);
-        loads.chain(unbalances).chain(self.watched.iter().map(|(_, section)| section))
+        loads.chain(unbalances).chain(self.probes.iter().map(|(_, section)| section))
     }
 
     /// Natural frequencies of a, b and c, rad/s.

@@ -173,7 +173,7 @@ pub struct Pressed {
 
 /// Cells without pressure are checked when the gaps of the others have fallen to this fraction since the last check.
 /// For a dent with a shoulder that is one iteration in ten, with sums three times as long.
-const LOOK: f64 = 0.05;
+const CHECK_AT: f64 = 0.05;
 /// Initial pressure of a joining cell, as a fraction of the last step's or of that which closes the gap of a single
 /// cell.
 const JOINING: f64 = 1e-3;
@@ -262,7 +262,7 @@ pub fn press(
                 conjugate = 0.0;
                 continue;
             }
-        } else if worst <= (LOOK * looked).max(tolerance * overclosed) {
+        } else if worst <= (CHECK_AT * looked).max(tolerance * overclosed) {
             influence.sink(scale, &p, &all, &mut sunk);
             everywhere = true;
             continue;

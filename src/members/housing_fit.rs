@@ -48,7 +48,7 @@ impl Seat {
 
 /// A contact node, for linearised contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TouchingNode {
+pub struct ContactNodeState {
     /// Index in the surface.
     pub node: usize,
     /// N/m.
@@ -68,7 +68,7 @@ pub struct SeatNow {
     pub contact: ContactSum,
     /// Displacement of each node along its normal, m.
     pub outward: Vec<f64>,
-    pub touching: Vec<TouchingNode>,
+    pub touching: Vec<ContactNodeState>,
     /// Modes node by node.
     pub by_node: Vec<f64>,
     nodes: Vec<ContactNode>,
@@ -126,7 +126,7 @@ impl SeatNow {
                 }
                 let (normal, arm) = (touch.normal, touch.arm);
                 let along = dot(normal, own);
-                touching.push(TouchingNode { node, stiffness, normal, arm, along, load });
+                touching.push(ContactNodeState { node, stiffness, normal, arm, along, load });
             },
         );
         Wrench { force: self.contact.force, moment: self.contact.moment }

@@ -115,13 +115,13 @@ pub type Bent<'b> = (&'b [ElasticShaft], &'b [usize], &'b [f64]);
 /// Wrench of loads at a mount on its body; modal forces are added to the modes.
 pub fn wrench_on_body(
     (hold, mount): (&Option<SectionAttachment>, &Mount),
-    (sits, body): (&BodyKinematics, &BodyKinematics),
+    (attached, body): (&BodyKinematics, &BodyKinematics),
     loads: &Wrench,
     (shafts, at, state): Bent,
     rates: &mut [f64],
 ) -> Wrench {
     match hold {
-        None => onto_body(mount, sits, body, loads),
+        None => onto_body(mount, attached, body, loads),
         Some(hold) => {
             let (shaft, at) = (&shafts[hold.shaft], at[hold.shaft]);
             let bend = shaft.bend(at, state);

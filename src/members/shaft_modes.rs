@@ -150,10 +150,10 @@ impl BendingPlane {
         let motions = self.rigid(rigid.centre);
         let free = FreeBody { mass: &self.mass, stiffness: &self.stiffness, rigid: &motions };
         let FreeShapes { frequencies, shapes, natural, cut } = free.shapes(limit, most, &rows)?;
-        Ok(self.told(&rigid, frequencies, &shapes, natural, cut))
+        Ok(self.shaft_shapes(&rigid, frequencies, &shapes, natural, cut))
     }
 
-    fn told(
+    fn shaft_shapes(
         &self,
         rigid: &RigidPart,
         frequencies: Vec<f64>,

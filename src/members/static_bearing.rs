@@ -170,7 +170,7 @@ impl Pair {
         let force = Vector3::new(g[0], g[1], g[2]);
         // Gradient over the axis, perpendicular to it.
         let per = [a_xi / a_xi.norm_squared(), a_lambda / a_lambda.norm_squared()];
-        let swing = per[0] * g[3] + per[1] * g[4];
+        let axis_slope = per[0] * g[3] + per[1] * g[4];
         let turn = Matrix3x5::from_columns(&[
             Vector3::zeros(),
             Vector3::zeros(),
@@ -198,17 +198,17 @@ impl Pair {
         let inner_shift = inner_by.fixed_view::<3, 5>(0, 0).into_owned();
         cross -= inner_shift.transpose() * pulled * turn;
         // Second order of the axis, less what the stiffness over the tilts contains.
-        own += turn.transpose() * turned_back(&swing, axis) * turn;
+        own += turn.transpose() * turned_back(&axis_slope, axis) * turn;
         let tilts = carried.fixed_view::<2, 5>(3, 0).into_owned();
-        let bends = swing.dot(&a_xi_lambda);
-        let bent = nalgebra::Matrix2::new(swing.dot(&a_xi_xi), bends, bends, 0.0);
+        let bends = axis_slope.dot(&a_xi_lambda);
+        let bent = nalgebra::Matrix2::new(axis_slope.dot(&a_xi_xi), bends, bends, 0.0);
         own -= tilts.transpose() * bent * tilts;
         let inner_tilts = inner_by.fixed_view::<2, 5>(3, 0).into_owned();
         let inner_axis = nalgebra::Matrix3x2::from_columns(&[a_xi, a_lambda]) * inner_tilts;
         cross += inner_tilts.transpose() * bent * tilts;
-        cross -= inner_axis.transpose() * swing.cross_matrix() * turn;
+        cross -= inner_axis.transpose() * axis_slope.cross_matrix() * turn;
         // Second order of the rotation.
-        let moment = arm.cross(&force) + axis.cross(&swing);
+        let moment = arm.cross(&force) + axis.cross(&axis_slope);
         let twist = 0.5 * self.tilt_axes[0].cross(&self.tilt_axes[1]).dot(&moment);
         own[(3, 4)] -= twist;
         own[(4, 3)] -= twist;

@@ -68,11 +68,11 @@ impl<'m> Joined<'m> {
 pub(crate) fn add_connection(model: &Model, connection: &Connection, here: &mut Evaluation) {
     let joined = Joined::new(model, connection, here);
     let ends = [&joined.ends[0], &joined.ends[1]];
-    let pull = connection.pull(ends, &[]);
-    here.energy += pull.energy;
+    let forces = connection.forces(ends, &[]);
+    here.energy += forces.energy;
     for end in 0..2 {
         let Some(first) = joined.firsts[end] else { continue };
-        let loads = &pull.on[end];
+        let loads = &forces.on[end];
         let mut rows = here.gradient.fixed_rows_mut::<5>(first);
         rows -= joined.conjugate(end, loads.force, loads.moment);
     }

@@ -131,7 +131,7 @@ impl SectionPlace {
         let bending = section.deflection.len();
         let force = Vector3::new(gradient[0], gradient[1], gradient[2]);
         let pull = force.dot(&self.turn.column(0));
-        let swing = tilts.per[0] * gradient[3] + tilts.per[1] * gradient[4];
+        let axis_slope = tilts.per[0] * gradient[3] + tilts.per[1] * gradient[4];
         let e3 = self.turn.column(2).into_owned();
         let [_, _, towards_2, towards_3] = self.bent;
         let [centre, axis] = slopes;
@@ -143,15 +143,15 @@ impl SectionPlace {
             for other in one..2 {
                 let [centre, axis] =
                     [self.arm, self.axis].map(|v| about.cross(&abouts[other].cross(&v)));
-                curved[(3 + one, 3 + other)] = force.dot(&centre) + swing.dot(&axis);
+                curved[(3 + one, 3 + other)] = force.dot(&centre) + axis_slope.dot(&axis);
             }
             for k in 5..count {
                 curved[(3 + one, k)] =
-                    force.dot(&about.cross(&centre[k])) + swing.dot(&about.cross(&axis[k]));
+                    force.dot(&about.cross(&centre[k])) + axis_slope.dot(&about.cross(&axis[k]));
             }
         }
         // Second derivatives of (cos τ, α sin τ/τ, β sin τ/τ) for small rotations.
-        let second = |v: [f64; 3]| swing.dot(&(self.turn * Vector3::from(v)));
+        let second = |v: [f64; 3]| axis_slope.dot(&(self.turn * Vector3::from(v)));
         let both = second([0.0, -towards_3 / 3.0, -towards_2 / 3.0]);
         let bent = [
             [second([-1.0, -towards_2, -towards_3 / 3.0]), both],
@@ -169,8 +169,8 @@ impl SectionPlace {
         }
         curved.fill_lower_triangle_with_upper_triangle();
         // Less what the stiffness over the section's tilts contains.
-        let cross = swing.dot(&tilts.xi_lambda);
-        let counted = Matrix2::new(swing.dot(&tilts.xi_xi), cross, cross, 0.0);
+        let cross = axis_slope.dot(&tilts.xi_lambda);
+        let counted = Matrix2::new(axis_slope.dot(&tilts.xi_xi), cross, cross, 0.0);
         let tilting = motion.fixed_rows::<2>(3);
         curved - tilting.transpose() * counted * tilting
     }

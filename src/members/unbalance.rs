@@ -33,7 +33,7 @@ pub(crate) fn turning_momentum(size: f64, spin: f64, angular: Vec3, forward: Vec
 }
 
 /// Returns whether a body with an unbalance is driven by a torque.
-pub fn swings(assembly: &Assembly, body: usize) -> bool {
+pub fn is_coupled(assembly: &Assembly, body: usize) -> bool {
     let of = &assembly.bodies[body];
     let by_torque = of.driven().is_some_and(|of| matches!(of.rotation, Rotation::Torque(_)));
     let on_shaft = |shaft: &ElasticShaft| shaft.body == body && !shaft.unbalances.is_empty();
@@ -177,14 +177,14 @@ impl UnbalanceCoupling {
         let of_shapes = self.on_shapes.iter().zip(&*pushes);
         let taken = dot(force, free.acceleration)
             + dot(moment, tilted)
-            + of_shapes.map(|(swing, push)| swing * push).sum::<f64>();
+            + of_shapes.map(|(coupling, push)| coupling * push).sum::<f64>();
         let moved = |given: &Drive| matches!(given, Drive::Load(_));
         let across = (0..3).filter(|&i| moved(&body.drives[i])).map(|i| force[i] * force[i]);
         let about = now.tilt_directions.iter().zip(&body.drives[3..]);
         let about = about.filter(|(_, drive)| moved(drive)).map(|(e, _)| dot(moment, *e).powi(2));
         let given_way = across.sum::<f64>() / inertia.mass
             + about.sum::<f64>() / inertia.transverse
-            + self.on_shapes.iter().map(|swing| swing * swing).sum::<f64>();
+            + self.on_shapes.iter().map(|coupling| coupling * coupling).sum::<f64>();
         let own = dot(free.spin_rate, axis);
         // An eccentric mass has an axial inertia, which is part of the body's: a body with less is invalid, and its
         // motion is NaN.
@@ -193,8 +193,8 @@ impl UnbalanceCoupling {
         loads.force = add_scaled(loads.force, -rate, force);
         let on_axis = inertia.axial * (rate - own);
         loads.moment = add(loads.moment, add_scaled(scale(moment, -rate), on_axis, axis));
-        for (push, swing) in pushes.iter_mut().zip(&self.on_shapes) {
-            *push -= rate * swing;
+        for (push, coupling) in pushes.iter_mut().zip(&self.on_shapes) {
+            *push -= rate * coupling;
         }
     }
 }

@@ -39,7 +39,7 @@ pub enum MeshError {
     #[error(
         "cell {cell} of block {block} is inverted; change the dimensions or the numbers of cells"
     )]
-    Tangled { block: usize, cell: usize },
+    InvertedCell { block: usize, cell: usize },
     #[error(
         "merging nodes within {tolerance:.5e} m would collapse element {element}, which has two nodes that close; remove the element, or remesh there"
     )]

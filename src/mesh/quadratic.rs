@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elevated {
     pub mesh: TetMesh,
-    pub pulled_back: usize,
+    pub moved_back: usize,
 }
 
 /// Smallest Jacobian of an element, relative to that with straight edges; below it mid-side
@@ -118,7 +118,7 @@ fn elevate_by(
             nodes
         })
         .collect();
-    let pulled_back = unfold(mesh, &quadratic, &straight, &mut middles);
+    let moved_back = unfold(mesh, &quadratic, &straight, &mut middles);
 
     let mut elevated = mesh.clone();
     elevated.elements = Elements::Quadratic(quadratic);
@@ -137,7 +137,7 @@ fn elevate_by(
             elevated.node_sets.insert(name.clone(), elevated.nodes_of_faces(faces));
         }
     }
-    Ok(Elevated { mesh: elevated, pulled_back })
+    Ok(Elevated { mesh: elevated, moved_back })
 }
 
 fn sorted(a: u32, b: u32) -> [u32; 2] {

@@ -198,7 +198,7 @@ impl BlockArrowMatrix {
         joint_forces(linearised, scale, moved, hubs);
         relaxing_forces(linearised, scale, r, hubs);
         for (block, solid) in solids.iter_mut().zip(&linearised.solids) {
-            block.push(solid, scale, r, moved, hubs);
+            block.subtract_forces(solid, scale, r, moved, hubs);
         }
         for (index, block) in linearised.blocks.iter().enumerate() {
             let right = &mut balls[index];

@@ -109,7 +109,7 @@ impl SolidBlock {
         }
         self.add_shapes();
         self.matrix.factor();
-        self.hold(schur);
+        self.couple_hubs(schur);
     }
 
     /// D + h²γ² Sᵀ k S, and its coupling to the hubs.
@@ -157,8 +157,14 @@ impl SolidBlock {
         }
     }
 
-    /// [`SolidBlock::push`] with the modal equations; the modal rates at fixed hubs are left in `gone`.
-    fn push_shapes(&mut self, scale: f64, places: &[f64], moved: &[[f64; 6]], to: &mut [f64]) {
+    /// [`SolidBlock::subtract_forces`] with the modal equations; the modal rates at fixed hubs are left in `gone`.
+    fn subtract_modal_forces(
+        &mut self,
+        scale: f64,
+        places: &[f64],
+        moved: &[[f64; 6]],
+        to: &mut [f64],
+    ) {
         let SolidBlock { seats, hubs, rows, matrix, coupled, forces, gone, .. } = self;
         let shapes = forces.len();
         for (_, seat) in seats.iter_mut() {
@@ -214,7 +220,7 @@ impl SolidBlock {
     }
 
     /// Adds Lᵀ times the factored levers to the upper triangle over hubs.
-    fn hold(&mut self, schur: &mut LdltMatrix) {
+    fn couple_hubs(&mut self, schur: &mut LdltMatrix) {
         let SolidBlock { seats, hubs, rows, matrix, levered, .. } = self;
         for (hub, levered) in hubs.iter().zip(levered) {
             levered.clear();
@@ -236,7 +242,7 @@ impl SolidBlock {
 
     /// Subtracts the forces of displacements in `r` (hubs: `moved`) and of modal forces from the right-hand sides of
     /// the hubs.
-    pub(crate) fn push(
+    pub(crate) fn subtract_forces(
         &mut self,
         solid: &Shapes,
         scale: f64,
@@ -252,7 +258,7 @@ impl SolidBlock {
             gone[k] = yielding * forces[k] + places[k] / scale;
         }
         if self.by_shapes {
-            self.push_shapes(scale, places, moved, hubs);
+            self.subtract_modal_forces(scale, places, moved, hubs);
             return;
         }
         for (_, seat) in seats.iter_mut() {
@@ -273,7 +279,7 @@ impl SolidBlock {
         }
     }
 
-    /// Modal rates from the rates of the hubs, after [`SolidBlock::push`].
+    /// Modal rates from the rates of the hubs, after [`SolidBlock::subtract_forces`].
     pub(crate) fn follow(
         &mut self,
         solid: &Shapes,

@@ -75,7 +75,7 @@ fn reaction(
                 }
             }
         }
-        for (slid, row) in slid.iter_mut().zip(&contact.carried) {
+        for (slid, row) in slid.iter_mut().zip(&contact.slip_change) {
             for i in 0..3 {
                 add_product(slid, &row[i], &between[i]);
             }

@@ -9,7 +9,7 @@ use crate::assembly::state::BodyState;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, scale, sub};
 use crate::members::connection::{Connection, Law};
 use crate::members::rigid_body::Wrench;
-use crate::motion::race_in_bore::{carried_on, mean_over, work_on_way};
+use crate::motion::race_in_bore::{in_free_motion, mean_over, work_on_way};
 use crate::motion::simulation::Simulation;
 use crate::numeric::profile::Profile;
 use crate::solids::explicit::ExplicitSolid;
@@ -35,7 +35,7 @@ pub struct BondedPart<'p> {
     pub spring: Connection,
     pub elements: BondedElements<'p>,
     /// Phase of a body on the bushing in a coupling step, rad.
-    pub window_phase: f64,
+    pub coupling_phase: f64,
 }
 
 /// Bushing nodes that move with a body.
@@ -135,7 +135,7 @@ pub struct BondedBushing<'p> {
     pub(crate) most: Option<f64>,
     /// Stiffness against a sudden displacement (N/m) and rotation (N·m/rad) of a body.
     pub(crate) stiffness: [f64; 2],
-    pub(crate) window_phase: f64,
+    pub(crate) coupling_phase: f64,
 }
 
 /// Loads of a bushing on the body of a sleeve.
@@ -202,8 +202,8 @@ impl SleeveNow {
         SleeveNow { sleeve, loads, work: 0.0, there: from, from, handed, pushed }
     }
 
-    pub(crate) fn begin_window(&mut self, window: f64, body: BodyState) {
-        let per_time = |now: Vec3, then: Vec3| scale(sub(now, then), 1.0 / window);
+    pub(crate) fn begin_coupling_step(&mut self, coupling_step: f64, body: BodyState) {
+        let per_time = |now: Vec3, then: Vec3| scale(sub(now, then), 1.0 / coupling_step);
         self.pushed =
             [per_time(body.velocity, self.from.velocity), per_time(body.spin, self.from.spin)];
         self.from = body;
@@ -215,7 +215,7 @@ impl SleeveNow {
         let mut body = self.from;
         body.velocity = add_scaled(body.velocity, 0.5 * after, self.pushed[0]);
         body.spin = add_scaled(body.spin, 0.5 * after, self.pushed[1]);
-        carried_on(&body, after)
+        in_free_motion(&body, after)
     }
 
     /// Books the forces on its nodes (N) `after` s from the beginning of the coupling step, over `step` s.
@@ -232,13 +232,13 @@ impl SleeveNow {
     }
 
     /// Mean load of the impulse over the coupling step, N and N·m.
-    pub(crate) fn mean_load(&self, window: f64) -> Wrench {
-        mean_over(&self.handed, window)
+    pub(crate) fn mean_load(&self, coupling_step: f64) -> Wrench {
+        mean_over(&self.handed, coupling_step)
     }
 
     /// Books the work of that load on the body up to its state `to`.
-    pub(crate) fn book(&mut self, window: f64, to: &BodyState) {
-        self.work += work_on_way(&self.mean_load(window), &self.from, to);
+    pub(crate) fn book(&mut self, coupling_step: f64, to: &BodyState) {
+        self.work += work_on_way(&self.mean_load(coupling_step), &self.from, to);
     }
 
     /// Load now, half a step after that of the last step.
@@ -275,7 +275,7 @@ impl<'p> BondedBushing<'p> {
                     let mut solid = RubberSolid::new(&model, StepOptions::default())?;
                     solid.rest_with(at())?;
                     let displacement = solid.displacement().to_vec();
-                    let solid = ExplicitSolid::of_carried_rubber(body, fraction, displacement)?;
+                    let solid = ExplicitSolid::of_driven_rubber(body, fraction, displacement)?;
                     BondedRubber::Explicit(Box::new(solid))
                 }
             };
@@ -298,14 +298,14 @@ impl<'p> BondedBushing<'p> {
             }
             BondedElements::Explicit { body, fraction } => {
                 let still = vec![[0.0; 3]; body.nodes.len()];
-                let solid = ExplicitSolid::of_carried_rubber(body, fraction, still)?;
+                let solid = ExplicitSolid::of_driven_rubber(body, fraction, still)?;
                 let step = solid.step_size;
                 (BondedRubber::Explicit(Box::new(solid)), Some(step))
             }
         };
         Ok(BondedBushing {
             stiffness: sudden_stiffness(&part.spring),
-            window_phase: part.window_phase,
+            coupling_phase: part.coupling_phase,
             name: part.name,
             steps: 1,
             step: 0.0,
@@ -338,26 +338,26 @@ impl<'p> BondedBushing<'p> {
     }
 
     /// Sets the steps for a coupling step of this length (s), before the first one.
-    pub(crate) fn step_in(&mut self, window: f64) {
-        let of = |most: f64| ((window / most * (1.0 - 1e-12)).ceil() as usize).max(1);
+    pub(crate) fn step_in(&mut self, coupling_step: f64) {
+        let of = |most: f64| ((coupling_step / most * (1.0 - 1e-12)).ceil() as usize).max(1);
         self.steps = self.most.map_or(1, of);
-        self.step = window / self.steps as f64;
+        self.step = coupling_step / self.steps as f64;
         if let BondedRubber::Explicit(solid) = &mut self.rubber {
             solid.step_size = self.step;
             solid.time = 0.5 * self.step;
         }
     }
 
-    pub(crate) fn begin_window(&mut self, simulation: &Simulation) {
-        let window = self.steps as f64 * self.step;
+    pub(crate) fn begin_coupling_step(&mut self, simulation: &Simulation) {
+        let coupling_step = self.steps as f64 * self.step;
         for now in &mut self.sleeves {
-            now.begin_window(window, simulation.body(now.sleeve.body));
+            now.begin_coupling_step(coupling_step, simulation.body(now.sleeve.body));
         }
     }
 
     /// Takes the steps of a coupling step, with the bodies extrapolated. Explicit steps end half a step after the time
     /// of the bodies, implicit ones half a step before it.
-    pub(crate) fn through_window(&mut self) -> Result<(), RubberError> {
+    pub(crate) fn take_coupling_step(&mut self) -> Result<(), RubberError> {
         for k in 0..self.steps {
             let after = (k as f64 + 0.5) * self.step;
             self.step_to(after)?;
@@ -372,7 +372,7 @@ impl<'p> BondedBushing<'p> {
                 for now in sleeves.iter_mut() {
                     let [here, next] = [after, after + step].map(|t| now.ahead(t));
                     let ways = now.sleeve.displacements(&here).zip(now.sleeve.displacements(&next));
-                    solid.carry(
+                    solid.drive_nodes(
                         ways.map(|((node, u), (_, next))| {
                             (node, u, scale(sub(next, u), 1.0 / step))
                         }),

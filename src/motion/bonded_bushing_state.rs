@@ -85,10 +85,10 @@ impl BondedBushing<'_> {
     /// Continues in coupling steps of this length (s) from [`BondedBushing::numbers`] of the same bushing; `None` if
     /// they are of another one.
     #[must_use]
-    pub fn restore(&mut self, window: f64, numbers: &[f64]) -> Option<()> {
+    pub fn restore(&mut self, coupling_step: f64, numbers: &[f64]) -> Option<()> {
         let mut rest = numbers;
         self.most = Some(rest.split_off(..1)?[0]).filter(|most| *most > 0.0);
-        self.step_in(window);
+        self.step_in(coupling_step);
         for now in &mut self.sleeves {
             let own = rest.split_off(..OF_SLEEVE)?;
             let mut threes = own.as_chunks::<3>().0.iter().copied();

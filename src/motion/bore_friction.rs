@@ -45,7 +45,7 @@ pub struct SeatFriction {
     /// Sums of the last step.
     pub sum: FrictionSum,
     /// Number of spring updates in all steps.
-    pub pulls: u64,
+    pub updates: u64,
     /// Springs of the present step.
     next: Vec<NodeSpring>,
 }
@@ -54,19 +54,19 @@ impl SeatFriction {
     /// Friction of a housing fit with this number of nodes.
     pub fn new(law: BoreFriction, nodes: usize) -> SeatFriction {
         let [springs, next] = [(), ()].map(|()| Vec::with_capacity(nodes));
-        SeatFriction { law, springs, sum: FrictionSum::default(), pulls: 0, next }
+        SeatFriction { law, springs, sum: FrictionSum::default(), updates: 0, next }
     }
 
     /// Contact and friction in a step of the solid, with an update of the springs; adds both to the forces of the nodes
     /// (N).
-    pub fn push(&mut self, pressed: &Pressed, forces: &mut [Node]) -> ContactSum {
-        let SeatFriction { law, springs, sum, pulls, next } = self;
+    pub fn step(&mut self, pressed: &Pressed, forces: &mut [Node]) -> ContactSum {
+        let SeatFriction { law, springs, sum, updates, next } = self;
         next.clear();
         let (contact, now) =
             pull_all(law, springs, *sum, pressed, forces, |node, spring| next.push((node, spring)));
         std::mem::swap(springs, next);
         *sum = now;
-        *pulls += contact.touching as u64;
+        *updates += contact.touching as u64;
         contact
     }
 
@@ -122,7 +122,7 @@ fn pull_all(
         let before = walk.spring_of(node.node);
         let load = stiffness * touch.penetration;
         let FrictionUpdate { spring, slips, heat, load_work } =
-            law.pull(&before, place, normal, load, stiffness);
+            law.update(&before, place, normal, load, stiffness);
         keep(node.node, spring);
         sum.heat += heat;
         sum.load_work += load_work;

@@ -3,7 +3,7 @@
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::lists::Assembly;
 use crate::motion::simulation::{RunOptions, Simulation, SimulationError, Stepping};
-use crate::motion::step_watch::LOOK_EVERY;
+use crate::motion::step_watch::CHECK_EVERY;
 use crate::numeric::clock::{Clock, whole_steps};
 
 /// Settings of a run.
@@ -96,7 +96,7 @@ pub fn watch(
     clock: &mut Clock,
     is_complete: bool,
 ) -> Result<(), SimulationError> {
-    if !simulation.steps.is_multiple_of(LOOK_EVERY) {
+    if !simulation.steps.is_multiple_of(CHECK_EVERY) {
         return Ok(());
     }
     if let Some(step) = simulation.watch_step()?.filter(|_| !is_complete) {

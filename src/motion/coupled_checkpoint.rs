@@ -5,7 +5,7 @@ use crate::kinematics::vec3::Vec3;
 use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
 use crate::motion::bore_friction::NodeSpring;
 use crate::motion::checkpoint::Checkpoint;
-use crate::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, SolidPart};
 use crate::motion::explicit_shaft::SteppedShaft;
 use crate::motion::explicit_solid::{SteppedSolid, seated};
 use crate::motion::race_in_bore::{Growth, Seat};
@@ -16,7 +16,7 @@ use crate::solids::step_limit::SolidStepLimit;
 
 /// State at the end of a coupling step, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ExchangeCheckpoint {
+pub struct CouplingCheckpoint {
     pub simulation: Checkpoint,
     pub solids: Vec<SteppedCheckpoint>,
     /// [`BondedBushing::numbers`] of each bushing.
@@ -59,16 +59,16 @@ pub struct FrictionCheckpoint {
 
 /// Step sizes chosen at the start.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Windows {
+pub struct CouplingSteps {
     /// Coupling step, s.
-    pub window: f64,
+    pub coupling_step: f64,
     /// Of each solid: steps in a coupling step, and what limits them.
     pub solids: Vec<(usize, SolidStepLimit)>,
 }
 
-impl<'p> Exchange<'p> {
+impl<'p> CoupledMotion<'p> {
     /// Writes the present state. Contact nodes are sorted first, so that both continuations test the same nodes.
-    pub fn checkpoint_into(&mut self, checkpoint: &mut ExchangeCheckpoint) {
+    pub fn checkpoint_into(&mut self, checkpoint: &mut CouplingCheckpoint) {
         self.simulation.checkpoint_into(&mut checkpoint.simulation);
         checkpoint.solids.resize_with(self.solids.len(), SteppedCheckpoint::default);
         for (part, kept) in self.solids.iter_mut().zip(&mut checkpoint.solids) {
@@ -94,9 +94,12 @@ impl<'p> Exchange<'p> {
         checkpoint.first = self.first;
     }
 
-    pub fn windows(&self) -> Windows {
+    pub fn coupling_steps(&self) -> CouplingSteps {
         let of = |part: &SteppedSolid| (part.steps, part.solid.limit);
-        Windows { window: self.window, solids: self.solids.iter().map(of).collect() }
+        CouplingSteps {
+            coupling_step: self.coupling_step,
+            solids: self.solids.iter().map(of).collect(),
+        }
     }
 
     /// Continues from a checkpoint of the same assembly, solids, housing fits, bushings and options.
@@ -113,18 +116,18 @@ impl<'p> Exchange<'p> {
         solids: Vec<SolidPart>,
         seats: Vec<Seat>,
         bushings: Vec<BondedPart<'p>>,
-        options: &ExchangeOptions,
-        windows: &Windows,
-        checkpoint: &ExchangeCheckpoint,
-    ) -> Result<Exchange<'p>, ExchangeError> {
-        assert_eq!(solids.len(), windows.solids.len());
+        options: &CouplingOptions,
+        coupling_steps: &CouplingSteps,
+        checkpoint: &CouplingCheckpoint,
+    ) -> Result<CoupledMotion<'p>, CouplingError> {
+        assert_eq!(solids.len(), coupling_steps.solids.len());
         let assembly = assembly.into();
         let method = ExplicitMethod::CentralDifferences;
         let mut solids: Vec<SteppedSolid> = solids
             .into_iter()
-            .zip(&windows.solids)
+            .zip(&coupling_steps.solids)
             .map(|(SolidPart { name, model, shaft, .. }, &(steps, limit))| {
-                let step = windows.window / steps as f64;
+                let step = coupling_steps.coupling_step / steps as f64;
                 let solid = ExplicitSolid::at_rest(model, method, step, limit);
                 let shaft =
                     shaft.map(|of| Box::new(SteppedShaft::new(of, &solid.model, &assembly)));
@@ -139,11 +142,14 @@ impl<'p> Exchange<'p> {
         for (part, kept) in bushings.into_iter().zip(&checkpoint.bushings) {
             let name = part.name.clone();
             let made = BondedBushing::unmoved(part, &simulation);
-            let mut bushing = made.map_err(|source| ExchangeError::Bushing { name, source })?;
-            bushing.restore(windows.window, kept).expect("as many numbers as the bushing left");
+            let mut bushing = made.map_err(|source| CouplingError::Bushing { name, source })?;
+            bushing
+                .restore(coupling_steps.coupling_step, kept)
+                .expect("as many numbers as the bushing left");
             on_rubber.push(bushing);
         }
-        let mut exchange = Exchange::of(simulation, solids, on_rubber, windows.window);
+        let mut exchange =
+            CoupledMotion::of(simulation, solids, on_rubber, coupling_steps.coupling_step);
         exchange.exchanges = checkpoint.exchanges;
         exchange.first = checkpoint.first;
         for (part, kept) in exchange.solids.iter_mut().zip(&checkpoint.solids) {

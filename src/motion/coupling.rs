@@ -56,7 +56,7 @@ impl SolidPart {
 
 /// Limits of the step sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExchangeOptions {
+pub struct CouplingOptions {
     /// Step of the solids as a fraction of their stability limit with the contact closed.
     pub solid_fraction: f64,
     /// Phase ωH of a body on all of its housing fits in a coupling step; stable below 2. Bushings have phases of their
@@ -65,15 +65,15 @@ pub struct ExchangeOptions {
     pub bearing: RunOptions,
 }
 
-impl ExchangeOptions {
+impl CouplingOptions {
     /// Options for bushings and shafts without a housing.
-    pub fn without_housings(bearing: RunOptions) -> ExchangeOptions {
-        ExchangeOptions { solid_fraction: 0.9, seat_phase: 1.0, bearing }
+    pub fn without_housings(bearing: RunOptions) -> CouplingOptions {
+        CouplingOptions { solid_fraction: 0.9, seat_phase: 1.0, bearing }
     }
 }
 
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum ExchangeError {
+pub enum CouplingError {
     #[error(transparent)]
     Bearing(#[from] SimulationError),
     #[error("{}{source}", of_solid(name))]
@@ -97,9 +97,9 @@ pub enum ExchangeError {
     )]
     NoSeat { seat: String },
     #[error(
-        "the coupling step would be {window} s: a body has no mass or inertia against its springs"
+        "the coupling step would be {coupling_step} s: a body has no mass or inertia against its springs"
     )]
-    NoWindow { window: f64 },
+    NoCouplingStep { coupling_step: f64 },
     #[error(
         "{race} has left its bore at t = {time} s, step {step}: it is displaced by {distance:.3e} m \
           {way}; {allowed:.3e} m are allowed"
@@ -107,7 +107,7 @@ pub enum ExchangeError {
     LeftBore { race: String, way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
     #[error(
         "{race} and its bore have moved by {moved:.3e} m at t = {time} s since nodes farther than {reach:.3e} m from contact \
-         were left out, within {LOOK} windows: far more than what is in equilibrium there moves. Hint: does the race start in the wall of \
+         were left out, within {CHECK_EVERY} coupling_steps: far more than what is in equilibrium there moves. Hint: does the race start in the wall of \
          its bore (fit, solid.mesh.origin)? Is a load, or its unit, far too large?"
     )]
     Outrun { race: String, moved: f64, reach: f64, time: f64 },
@@ -118,16 +118,16 @@ fn of_solid(name: &Option<String>) -> String {
 }
 
 /// Coupling steps between two checks of displacements.
-const LOOK: u64 = 16;
+const CHECK_EVERY: u64 = 16;
 
 /// Bodies and bearings with races in the bores of solids, or on bushings of rubber.
-pub struct Exchange<'p> {
+pub struct CoupledMotion<'p> {
     pub simulation: Simulation,
     /// In the order of the solids' housing fits, which is the order of every sum over them.
     pub solids: Vec<SteppedSolid>,
     pub bushings: Vec<BondedBushing<'p>>,
     /// Length of the coupling step, s.
-    pub window: f64,
+    pub coupling_step: f64,
     pub exchanges: u64,
     /// Initial energy in the ledger, J.
     pub(crate) first: f64,
@@ -135,12 +135,12 @@ pub struct Exchange<'p> {
     is_alone: bool,
     /// Loads in the present coupling step, for each body in a bore.
     loads: Vec<(usize, Wrench)>,
-    crew: WorkerPool,
+    workers: WorkerPool,
 }
 
 /// Energies and loads at the present time.
 #[derive(Clone, Debug)]
-pub struct ExchangeSnapshot {
+pub struct CouplingSnapshot {
     pub simulation: Snapshot,
     pub solids: Vec<SolidSnapshot>,
     pub bushings: Vec<BondedSnapshot>,
@@ -150,54 +150,54 @@ pub struct ExchangeSnapshot {
     pub turned_over: f64,
 }
 
-impl<'p> Exchange<'p> {
+impl<'p> CoupledMotion<'p> {
     /// The state before the first coupling step.
     pub(crate) fn of(
         simulation: Simulation,
         solids: Vec<SteppedSolid>,
         bushings: Vec<BondedBushing<'p>>,
-        window: f64,
-    ) -> Exchange<'p> {
-        Exchange {
+        coupling_step: f64,
+    ) -> CoupledMotion<'p> {
+        CoupledMotion {
             is_alone: is_alone(&simulation.system.assembly, &solids, &bushings),
             loads: Vec::with_capacity(simulation.system.assembly.bodies.len()),
             simulation,
             solids,
             bushings,
-            window,
+            coupling_step,
             exchanges: 0,
             first: 0.0,
-            crew: WorkerPool::default(),
+            workers: WorkerPool::default(),
         }
     }
 
     /// Runs the solids on this number of threads, with the same bits. Each solid gets a share of the threads
     /// proportional to its elements.
     pub fn share(&mut self, threads: usize) {
-        self.crew = WorkerPool::new(threads);
+        self.workers = WorkerPool::new(threads);
         let cost = |part: &SteppedSolid| part.solid.model.problem.elements.len() * part.steps;
         let all: usize = self.solids.iter().map(cost).sum();
         for part in &mut self.solids {
-            let parts = (2 * self.crew.threads() * cost(part) + all) / (2 * all).max(1);
-            part.solid.share(&self.crew, parts.max(1));
+            let parts = (2 * self.workers.threads() * cost(part) + all) / (2 * all).max(1);
+            part.solid.share(&self.workers, parts.max(1));
         }
     }
 
     pub fn threads(&self) -> usize {
-        self.crew.threads()
+        self.workers.threads()
     }
 
     /// Starts counts, contact and energy balance from the present state.
-    pub(crate) fn begin(&mut self) -> Result<(), ExchangeError> {
+    pub(crate) fn begin(&mut self) -> Result<(), CouplingError> {
         for part in &mut self.solids {
-            part.step_in(self.window);
+            part.step_in(self.coupling_step);
             for seat in &mut part.seats {
                 seat.grow_from(&part.solid);
             }
             part.sort(&self.simulation);
         }
         for bushing in &mut self.bushings {
-            bushing.step_in(self.window);
+            bushing.step_in(self.coupling_step);
         }
         self.first = self.balance()?.residual;
         Ok(())
@@ -208,17 +208,17 @@ impl<'p> Exchange<'p> {
     ///
     /// # Errors
     ///
-    /// See [`Exchange::snapshot`].
-    pub fn divide(&mut self, interval: f64) -> Result<u64, ExchangeError> {
+    /// See [`CoupledMotion::snapshot`].
+    pub fn divide(&mut self, interval: f64) -> Result<u64, CouplingError> {
         // Rounding must not add a coupling step.
-        let windows = (interval / self.window * (1.0 - 1e-12)).ceil().max(1.0);
-        self.window = interval / windows;
+        let coupling_steps = (interval / self.coupling_step * (1.0 - 1e-12)).ceil().max(1.0);
+        self.coupling_step = interval / coupling_steps;
         // The step of the bodies is at most a coupling step.
         if self.simulation.control.is_none() {
-            self.simulation.step_size = self.simulation.step_size.min(self.window);
+            self.simulation.step_size = self.simulation.step_size.min(self.coupling_step);
         }
         self.begin()?;
-        Ok(windows as u64)
+        Ok(coupling_steps as u64)
     }
 
     /// Present time, s: that of the bodies and of the solids' velocities.
@@ -234,7 +234,7 @@ impl<'p> Exchange<'p> {
         ran.seats = self.seats().map(|_| Counts::default()).collect();
         for (tally, seat) in ran.seats.iter_mut().zip(self.seats()) {
             tally.add(Stage::Seat, seat.presses);
-            tally.add(Stage::BoreFriction, seat.friction.as_ref().map_or(0, |of| of.pulls));
+            tally.add(Stage::BoreFriction, seat.friction.as_ref().map_or(0, |of| of.updates));
         }
         ran
     }
@@ -257,33 +257,33 @@ impl<'p> Exchange<'p> {
     /// # Errors
     ///
     /// The error of a body or solid; a race outside its bore.
-    pub fn advance(&mut self) -> Result<(), ExchangeError> {
-        if self.exchanges.is_multiple_of(LOOK) {
+    pub fn advance(&mut self) -> Result<(), CouplingError> {
+        if self.exchanges.is_multiple_of(CHECK_EVERY) {
             self.check()?;
         }
         for part in &mut self.solids {
             for seat in &mut part.seats {
-                seat.begin_window(self.simulation.body(seat.seat.mount.body));
+                seat.begin_coupling_step(self.simulation.body(seat.seat.mount.body));
             }
             if let Some(shaft) = &mut part.shaft {
-                shaft.begin_window(&self.simulation);
+                shaft.begin_coupling_step(&self.simulation);
             }
         }
-        self.crew.each(&mut self.solids, |part| {
-            let moved = part.through_window();
-            moved.map_err(|source| ExchangeError::Solid { name: part.name.clone(), source })
+        self.workers.each(&mut self.solids, |part| {
+            let moved = part.take_coupling_step();
+            moved.map_err(|source| CouplingError::Solid { name: part.name.clone(), source })
         })?;
         for bushing in &mut self.bushings {
-            bushing.begin_window(&self.simulation);
-            let moved = bushing.through_window();
-            let named = |source| ExchangeError::Bushing { name: bushing.name.clone(), source };
+            bushing.begin_coupling_step(&self.simulation);
+            let moved = bushing.take_coupling_step();
+            let named = |source| CouplingError::Bushing { name: bushing.name.clone(), source };
             moved.map_err(named)?;
         }
         self.hand_over();
         self.exchanges += 1;
-        let target = self.window * self.exchanges as f64;
+        let target = self.coupling_step * self.exchanges as f64;
         let mut left = target - self.simulation.time;
-        while left > 1e-9 * self.window {
+        while left > 1e-9 * self.coupling_step {
             let parts = (left / self.simulation.step_size * (1.0 - 1e-9)).ceil().max(1.0);
             left -= self.simulation.step_by(left / parts)?;
         }
@@ -293,7 +293,7 @@ impl<'p> Exchange<'p> {
     }
 
     /// Checks that races are in their bores and that untested nodes are out of contact.
-    fn check(&mut self) -> Result<(), ExchangeError> {
+    fn check(&mut self) -> Result<(), CouplingError> {
         let (time, step) = (self.simulation.time, self.exchanges);
         for part in &mut self.solids {
             for seat in &mut part.seats {
@@ -303,9 +303,9 @@ impl<'p> Exchange<'p> {
                     let race = self.simulation.system.assembly.bodies[index].name.clone();
                     match lost {
                         Lost::Bore(way, distance, allowed) => {
-                            ExchangeError::LeftBore { race, way, distance, allowed, time, step }
+                            CouplingError::LeftBore { race, way, distance, allowed, time, step }
                         }
-                        Lost::Reach(moved) => ExchangeError::Outrun { race, moved, reach, time },
+                        Lost::Reach(moved) => CouplingError::Outrun { race, moved, reach, time },
                     }
                 })?;
             }
@@ -316,21 +316,21 @@ impl<'p> Exchange<'p> {
     /// Applies the impulses of the coupling step to the bodies.
     fn hand_over(&mut self) {
         self.loads.clear();
-        let (loads, window) = (&mut self.loads, self.window);
+        let (loads, coupling_step) = (&mut self.loads, self.coupling_step);
         let mut push =
             |body: usize, load: Wrench| match loads.iter_mut().find(|(other, _)| *other == body) {
                 Some((_, sum)) => sum.add(&load),
                 None => loads.push((body, load)),
             };
         for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
-            push(seat.seat.mount.body, seat.take_mean_load(window));
+            push(seat.seat.mount.body, seat.take_mean_load(coupling_step));
         }
         for now in self.solids.iter().filter_map(|part| part.shaft.as_ref()).flat_map(|s| &s.joints)
         {
-            push(now.joint.body, now.mean_load(window));
+            push(now.joint.body, now.mean_load(coupling_step));
         }
         for now in self.bushings.iter().flat_map(|bushing| &bushing.sleeves) {
-            push(now.sleeve.body, now.mean_load(window));
+            push(now.sleeve.body, now.mean_load(coupling_step));
         }
         self.simulation.set_outside_loads(&self.loads);
     }
@@ -344,15 +344,15 @@ impl<'p> Exchange<'p> {
         for seat in self.solids.iter_mut().flat_map(|part| &mut part.seats) {
             match integrated {
                 Some(work) => seat.work = work,
-                None => seat.book(self.window, &self.simulation.body(seat.seat.mount.body)),
+                None => seat.book(self.coupling_step, &self.simulation.body(seat.seat.mount.body)),
             }
         }
         let shafts = self.solids.iter_mut().filter_map(|part| part.shaft.as_mut());
         for now in shafts.flat_map(|shaft| &mut shaft.joints) {
-            now.book(self.window, &self.simulation.body(now.joint.body));
+            now.book(self.coupling_step, &self.simulation.body(now.joint.body));
         }
         for now in self.bushings.iter_mut().flat_map(|bushing| &mut bushing.sleeves) {
-            now.book(self.window, &self.simulation.body(now.sleeve.body));
+            now.book(self.coupling_step, &self.simulation.body(now.sleeve.body));
         }
     }
 
@@ -373,7 +373,7 @@ impl<'p> Exchange<'p> {
     /// # Errors
     ///
     /// An energy residual of the bodies beyond the limit in their options.
-    pub fn snapshot(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
+    pub fn snapshot(&mut self) -> Result<CouplingSnapshot, CouplingError> {
         let mut snapshot = self.balance()?;
         snapshot.residual -= self.first;
         Ok(snapshot)
@@ -381,9 +381,9 @@ impl<'p> Exchange<'p> {
 
     /// Energies. Bodies are balanced at their time, solids and contacts half a step later: the work of the contacts on
     /// the bodies in between is added.
-    fn balance(&mut self) -> Result<ExchangeSnapshot, ExchangeError> {
+    fn balance(&mut self) -> Result<CouplingSnapshot, CouplingError> {
         let bodies = self.simulation.snapshot();
-        let Exchange { simulation, solids, bushings, .. } = self;
+        let CoupledMotion { simulation, solids, bushings, .. } = self;
         let solids: Vec<SolidSnapshot> =
             solids.iter_mut().map(|part| part.snapshot(simulation)).collect();
         let bushings: Vec<BondedSnapshot> =
@@ -425,6 +425,6 @@ impl<'p> Exchange<'p> {
             + of_joints(|joint| joint.heat)
             + of_solids(|solid| solid.unbalance_work.abs())
             + of_bushings(|of| of.held() + of.dissipated);
-        Ok(ExchangeSnapshot { simulation: bodies, solids, bushings, residual, turned_over })
+        Ok(CouplingSnapshot { simulation: bodies, solids, bushings, residual, turned_over })
     }
 }

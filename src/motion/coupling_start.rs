@@ -7,8 +7,8 @@ use crate::equilibrium::statics::StaticsError;
 use crate::members::flexible_shaft::ElasticShaft;
 use crate::members::rigid_body;
 use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
-use crate::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
-use crate::motion::coupling_step::{check, divided, longest_window};
+use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, SolidPart};
+use crate::motion::coupling_step::{check, divided, longest_coupling_step};
 use crate::motion::explicit_shaft::SteppedShaft;
 use crate::motion::explicit_solid::{SteppedSolid, seated};
 use crate::motion::race_in_bore::Seat;
@@ -18,7 +18,7 @@ use crate::solids::contact::closed_limit;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, padded};
 use crate::solids::step_limit::step_limit;
 
-impl<'p> Exchange<'p> {
+impl<'p> CoupledMotion<'p> {
     /// Starts in equilibrium. Bodies in solids start at their prescribed position, all others in equilibrium with them,
     /// bearings roll, and solids are at rest with the given displacement.
     ///
@@ -33,17 +33,17 @@ impl<'p> Exchange<'p> {
         assembly: impl Into<Assembly>,
         solids: Vec<SolidPart>,
         seats: Vec<Seat>,
-        options: &ExchangeOptions,
-    ) -> Result<Exchange<'p>, ExchangeError> {
-        Exchange::with_bushings(assembly, solids, seats, Vec::new(), options)
+        options: &CouplingOptions,
+    ) -> Result<CoupledMotion<'p>, CouplingError> {
+        CoupledMotion::with_bushings(assembly, solids, seats, Vec::new(), options)
     }
 
-    /// As [`Exchange::new`], with bushings between bodies. The equilibrium is that of springs with the relaxed
+    /// As [`CoupledMotion::new`], with bushings between bodies. The equilibrium is that of springs with the relaxed
     /// stiffness of the rubber elements.
     ///
     /// # Errors
     ///
-    /// Those of [`Exchange::new`]; rubber without an equilibrium.
+    /// Those of [`CoupledMotion::new`]; rubber without an equilibrium.
     ///
     /// # Panics
     ///
@@ -53,8 +53,8 @@ impl<'p> Exchange<'p> {
         solids: Vec<SolidPart>,
         seats: Vec<Seat>,
         bushings: Vec<BondedPart<'p>>,
-        options: &ExchangeOptions,
-    ) -> Result<Exchange<'p>, ExchangeError> {
+        options: &CouplingOptions,
+    ) -> Result<CoupledMotion<'p>, CouplingError> {
         let assembly = assembly.into();
         check(&assembly, &seats, options)?;
         let method = ExplicitMethod::CentralDifferences;
@@ -78,26 +78,27 @@ impl<'p> Exchange<'p> {
             .map(|seat| seat.mount.body)
             .chain(joined.map(|now| now.joint.body))
             .collect();
-        let state = held_start(&assembly, &held, &bushings)?;
+        let state = fixed_start(&assembly, &held, &bushings)?;
         let mut simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
         if bushings.iter().any(|part| part.is_moved(&simulation)) {
             for part in &mut bushings {
                 let measured = part.measure();
-                let named = |source| ExchangeError::Bushing { name: part.name.clone(), source };
+                let named = |source| CouplingError::Bushing { name: part.name.clone(), source };
                 measured.map_err(named)?;
             }
             let assembly = simulation.system.assembly;
-            let state = held_start(&assembly, &held, &bushings)?;
+            let state = fixed_start(&assembly, &held, &bushings)?;
             simulation = Simulation::from_state(assembly, options.bearing, state, 0.0)?;
         }
         let mut on_rubber = Vec::with_capacity(bushings.len());
         for part in bushings {
             let name = part.name.clone();
             let bushing = BondedBushing::new(part, &simulation);
-            on_rubber.push(bushing.map_err(|source| ExchangeError::Bushing { name, source })?);
+            on_rubber.push(bushing.map_err(|source| CouplingError::Bushing { name, source })?);
         }
         let assembly = &simulation.system.assembly;
-        let longest = longest_window(assembly, &seats, &solids, &on_rubber, options.seat_phase)?;
+        let longest =
+            longest_coupling_step(assembly, &seats, &solids, &on_rubber, options.seat_phase)?;
         let steps: Vec<f64> = solids
             .iter()
             .map(|SteppedSolid { solid, seats, shaft, .. }| {
@@ -114,11 +115,11 @@ impl<'p> Exchange<'p> {
         let elements: Vec<usize> =
             solids.iter().map(|part| part.solid.model.problem.elements.len()).collect();
         // The steps of the bodies divide the coupling step or are divided by it.
-        let (window, steps) = divided(&elements, &steps, longest);
+        let (coupling_step, steps) = divided(&elements, &steps, longest);
         for (part, steps) in solids.iter_mut().zip(steps) {
             part.steps = steps;
         }
-        let mut exchange = Exchange::of(simulation, solids, on_rubber, window);
+        let mut exchange = CoupledMotion::of(simulation, solids, on_rubber, coupling_step);
         exchange.simulation.system.ran.whole.add(Stage::StartEquilibrium, 1);
         exchange.begin()?;
         Ok(exchange)
@@ -142,7 +143,7 @@ pub(crate) fn is_alone(
 }
 
 /// Equilibrium with bodies in and on solids fixed at their start, and bushings replaced by springs.
-fn held_start(
+fn fixed_start(
     assembly: &Assembly,
     in_solids: &[usize],
     bushings: &[BondedPart],
@@ -150,7 +151,7 @@ fn held_start(
     let mut held = assembly.clone();
     held.connections.extend(bushings.iter().map(|part| part.spring.clone()));
     for body in in_solids {
-        held.bodies[*body].hold();
+        held.bodies[*body].fix();
     }
     let mut state = start::at_equilibrium(&held)?;
     // The ledger entries of the springs follow those of the other connections and precede flexible shafts.

@@ -3,7 +3,7 @@
 use crate::assembly::lists::Assembly;
 use crate::assembly::loads::Rotation;
 use crate::motion::bonded_bushing::BondedBushing;
-use crate::motion::coupling::{ExchangeError, ExchangeOptions};
+use crate::motion::coupling::{CouplingError, CouplingOptions};
 use crate::motion::explicit_shaft::BRAKED;
 use crate::motion::explicit_solid::SteppedSolid;
 use crate::motion::race_in_bore::Seat;
@@ -14,16 +14,16 @@ const JOINT_PHASE: f64 = 0.5;
 
 /// Longest coupling step, s, within the phase limits of each body on its housing fits, bushings and shafts. Stiffnesses
 /// over squared phases add up.
-pub(crate) fn longest_window(
+pub(crate) fn longest_coupling_step(
     assembly: &Assembly,
     seats: &[Seat],
     solids: &[SteppedSolid],
     bushings: &[BondedBushing],
     phase: f64,
-) -> Result<f64, ExchangeError> {
+) -> Result<f64, CouplingError> {
     let joints = || solids.iter().filter_map(|part| part.shaft.as_ref()).flat_map(|s| &s.joints);
     if seats.is_empty() && bushings.is_empty() && joints().next().is_none() {
-        return Err(ExchangeError::NoSeat { seat: String::new() });
+        return Err(CouplingError::NoSeat { seat: String::new() });
     }
     let mut most = 0.0f64;
     for (index, body) in assembly.bodies.iter().enumerate() {
@@ -34,7 +34,7 @@ pub(crate) fn longest_window(
         for seat in seats.iter().filter(|seat| seat.mount.body == index) {
             let [shift, tilt, turn] = seat.stiffness([x, y, z]);
             if shift.is_nan() || shift <= 0.0 {
-                return Err(ExchangeError::NoSeat { seat: seat.suffix() });
+                return Err(CouplingError::NoSeat { seat: seat.suffix() });
             }
             about_axis += turn;
             sums = [sums[0] + shift, sums[1] + tilt];
@@ -42,7 +42,7 @@ pub(crate) fn longest_window(
         let sleeves =
             |bushing: &&BondedBushing| bushing.sleeves.iter().any(|now| now.sleeve.body == index);
         for bushing in bushings.iter().filter(sleeves) {
-            let ([shift, tilt], weight) = (bushing.stiffness, phase / bushing.window_phase);
+            let ([shift, tilt], weight) = (bushing.stiffness, phase / bushing.coupling_phase);
             let weight = weight * weight;
             sums = [sums[0] + weight * shift, sums[1] + weight * tilt];
         }
@@ -64,9 +64,13 @@ pub(crate) fn longest_window(
             most = most.max(about_axis / inertia.axial);
         }
     }
-    let window = phase / most.sqrt();
+    let coupling_step = phase / most.sqrt();
     // A massless body, or NaN.
-    if window > 0.0 { Ok(window) } else { Err(ExchangeError::NoWindow { window }) }
+    if coupling_step > 0.0 {
+        Ok(coupling_step)
+    } else {
+        Err(CouplingError::NoCouplingStep { coupling_step })
+    }
 }
 
 /// Number of steps of each solid in a coupling step, and its length, s. The coupling step is a whole number of steps of
@@ -75,21 +79,21 @@ pub(crate) fn longest_window(
 pub(crate) fn divided(elements: &[usize], step: &[f64], longest: f64) -> (f64, Vec<usize>) {
     let mut best: Option<(f64, f64, Vec<usize>)> = None;
     for whole in step {
-        let window = ((longest / whole) as usize).max(1) as f64 * whole;
+        let coupling_step = ((longest / whole) as usize).max(1) as f64 * whole;
         let steps: Vec<usize> = step
             .iter()
-            .map(|step| ((window / step * (1.0 - 1e-12)).ceil() as usize).max(1))
+            .map(|step| ((coupling_step / step * (1.0 - 1e-12)).ceil() as usize).max(1))
             .collect();
         let each = elements.iter().zip(&steps).map(|(elements, steps)| (elements * steps) as f64);
-        let cost = each.sum::<f64>() / window;
+        let cost = each.sum::<f64>() / coupling_step;
         let better = |(least, length, _): &(f64, f64, Vec<usize>)| {
-            cost < *least || (cost == *least && window > *length)
+            cost < *least || (cost == *least && coupling_step > *length)
         };
         if best.as_ref().is_none_or(better) {
-            best = Some((cost, window, steps));
+            best = Some((cost, coupling_step, steps));
         }
     }
-    best.map_or((longest, Vec::new()), |(_, window, steps)| (window, steps))
+    best.map_or((longest, Vec::new()), |(_, coupling_step, steps)| (coupling_step, steps))
 }
 
 /// # Errors
@@ -98,23 +102,23 @@ pub(crate) fn divided(elements: &[usize], step: &[f64], longest: f64) -> (f64, V
 pub(crate) fn check(
     assembly: &Assembly,
     seats: &[Seat],
-    options: &ExchangeOptions,
-) -> Result<(), ExchangeError> {
+    options: &CouplingOptions,
+) -> Result<(), CouplingError> {
     let ranges = [
         ("the fraction of the solid's step limit", options.solid_fraction, 1.0),
         ("the phase of a housing fit in a coupling step", options.seat_phase, 1.9),
     ];
     for (name, value, most) in ranges {
         if !(value > 0.0 && value <= most) {
-            return Err(ExchangeError::Option { name, value, most });
+            return Err(CouplingError::Option { name, value, most });
         }
     }
     for seat in seats {
         let body = &assembly.bodies[seat.mount.body];
         let race = body.name.clone();
-        let Some(driven) = body.driven() else { return Err(ExchangeError::FixedRace { race }) };
+        let Some(driven) = body.driven() else { return Err(CouplingError::FixedRace { race }) };
         if driven.foundation_stiffness.iter().chain(&driven.foundation_damping).any(|k| *k != 0.0) {
-            return Err(ExchangeError::Foundation { race });
+            return Err(CouplingError::Foundation { race });
         }
     }
     Ok(())

@@ -98,7 +98,7 @@ impl System {
             }
         }
         for index in 0..assembly.connections.len() {
-            energy.foundation += self.pull(state, index).energy;
+            energy.foundation += self.connection_forces(state, index).energy;
         }
         for solid in 0..assembly.solids.len() {
             let of = self.energy_of_solid(state, solid);
@@ -106,7 +106,9 @@ impl System {
             energy.solid_strain += of.strain;
             energy.gravity += of.gravity;
         }
-        for index in self.steps.moving.iter().copied().filter(|&of| self.steps.bodies[of].swings) {
+        for index in
+            self.steps.moving.iter().copied().filter(|&of| self.steps.bodies[of].unbalance_coupled)
+        {
             let bent = bent_of(assembly, &self.shafts, index, state).map(|(_, bent)| bent);
             let of = (&assembly.bodies[index], &self.bodies[index]);
             let [kinetic, weight] = energies(of, bent, assembly.gravity);

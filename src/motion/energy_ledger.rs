@@ -8,7 +8,7 @@ use crate::motion::system::System;
 
 /// Steps of Runge–Kutta, each a fraction of the shortest period, between two checks of the ledger. Other integrators
 /// are checked after each step.
-const LOOK_EVERY: u64 = 16;
+const CHECK_EVERY: u64 = 16;
 
 /// Energy balance since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,7 +76,7 @@ impl Balance {
         steps: u64,
     ) -> Result<(), SimulationError> {
         let by_steps = options.integrator == Integrator::RungeKutta;
-        if options.energy_limit == f64::INFINITY || (by_steps && !steps.is_multiple_of(LOOK_EVERY))
+        if options.energy_limit == f64::INFINITY || (by_steps && !steps.is_multiple_of(CHECK_EVERY))
         {
             return Ok(());
         }
@@ -117,7 +117,7 @@ impl Balance {
         options: &RunOptions,
         steps: u64,
     ) -> Result<(), SimulationError> {
-        let every = if options.integrator == Integrator::RungeKutta { LOOK_EVERY } else { 1 };
+        let every = if options.integrator == Integrator::RungeKutta { CHECK_EVERY } else { 1 };
         let turned_over = self.turned_over(last, options);
         let is_told = steps >= u64::from(MOST_OPEN) * every || turned_over == 0.0;
         if is_told || self.watch.closes(last.residual, turned_over, options.energy_limit) {

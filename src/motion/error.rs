@@ -1,4 +1,4 @@
-//! Errors at the start or in the course of a simulation.
+//! Errors at the start or during a simulation.
 
 use crate::equilibrium::statics::StaticsError;
 use crate::members::dent_table::DentError;
@@ -42,7 +42,7 @@ pub enum SimulationError {
     NoStep,
     #[error(
         "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {at} s, \
-         step {step} ({reason}): what swings would grow, or what slides swing to and fro; take a \
+          step {step} ({reason}): oscillations would grow, or sliding alternate; take a \
          shorter step (numerics.step), or leave it out for one that follows from the limit",
         at = display_time(*time)
     )]

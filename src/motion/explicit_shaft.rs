@@ -11,7 +11,7 @@ use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale};
 use crate::members::connection::{SpringDashpot, SpringForces, spring_dashpot};
 use crate::members::rigid_body;
 use crate::members::rigid_body::{BodyKinematics, Wrench};
-use crate::motion::race_in_bore::{carried_on, mean_over, work_on_way};
+use crate::motion::race_in_bore::{in_free_motion, mean_over, work_on_way};
 use crate::motion::simulation::Simulation;
 use crate::numeric::profile::Profile;
 use crate::solids::explicit::ExplicitSolid;
@@ -27,7 +27,7 @@ pub struct ShaftPart {
     pub joints: Vec<Joint>,
     pub unbalances: Vec<SectionUnbalance>,
     /// Sections that are recorded, by name.
-    pub watched: Vec<(String, RotorSection)>,
+    pub probes: Vec<(String, RotorSection)>,
 }
 
 /// A rigid body on a section, joined to it by springs between centres and axes.
@@ -124,7 +124,7 @@ pub struct SteppedShaft {
     pub speed: Profile,
     pub joints: Vec<JointNow>,
     pub unbalances: Vec<SectionUnbalance>,
-    pub watched: Vec<(String, RotorSection)>,
+    pub probes: Vec<(String, RotorSection)>,
     /// Work of unbalances on the shaft since the start, J.
     pub unbalance_work: f64,
     /// Number of evaluations of sections and attachments.
@@ -152,7 +152,7 @@ impl SteppedShaft {
             joints: part.joints.into_iter().map(joint).collect(),
             forces: vec![[0.0; 3]; part.unbalances.len()],
             unbalances: part.unbalances,
-            watched: part.watched,
+            probes: part.probes,
             unbalance_work: 0.0,
             looks: 0,
             axial_inertia: model.mass.iter().zip(&model.problem.nodes).map(around).sum(),
@@ -186,7 +186,7 @@ impl SteppedShaft {
         }
     }
 
-    pub(crate) fn begin_window(&mut self, simulation: &Simulation) {
+    pub(crate) fn begin_coupling_step(&mut self, simulation: &Simulation) {
         for now in &mut self.joints {
             now.from = simulation.body(now.joint.body);
             now.handed = Wrench::default();
@@ -199,7 +199,7 @@ impl SteppedShaft {
         self.looks += 1;
         for now in &mut self.joints {
             let place = place_of(&now.joint.section, solid);
-            let pull = pulled(&now.joint, &place, &carried_on(&now.from, after));
+            let pull = pulled(&now.joint, &place, &in_free_motion(&now.from, after));
             now.handed.force = add_scaled(now.handed.force, step, pull.on[1].force);
             now.handed.moment = add_scaled(now.handed.moment, step, pull.on[1].moment);
             now.heat -= step * pull.loss;
@@ -233,7 +233,7 @@ impl SteppedShaft {
     }
 
     /// Adds the forces of this step to those of the nodes, N.
-    pub(crate) fn push(&self, forces: &mut [Node]) {
+    pub(crate) fn add_forces(&self, forces: &mut [Node]) {
         for now in &self.joints {
             let Some(place) = &now.place else { continue };
             let Wrench { force, moment } = now.on_section;
@@ -256,7 +256,7 @@ impl SteppedShaft {
         let joint = |now: &JointNow| {
             let place = now.joint.section.place(&u, &v);
             let body = simulation.body(now.joint.body);
-            let pull = pulled(&now.joint, &place, &carried_on(&body, ahead));
+            let pull = pulled(&now.joint, &place, &in_free_motion(&body, ahead));
             let Wrench { force, moment } = pull.on[0];
             add_to(forces, now.joint.section.forces_at(&place, force, moment));
             let load = pull.on[1];
@@ -281,11 +281,11 @@ impl SteppedShaft {
     }
 
     /// Centres of the recorded sections at the time of the bodies, half a step before the solid's displacements, m.
-    pub fn watched_centres<'s>(
+    pub fn probe_centres<'s>(
         &'s self,
         solid: &'s ExplicitSolid,
     ) -> impl Iterator<Item = Vec3> + 's {
-        self.watched.iter().map(|(_, section)| {
+        self.probes.iter().map(|(_, section)| {
             let place = place_of(section, solid);
             add_scaled(place.centre, -0.5 * solid.step_size, place.velocity)
         })
@@ -320,13 +320,13 @@ impl SteppedShaft {
 
 impl JointNow {
     /// Mean load of the impulse over the coupling step, N and N·m.
-    pub(crate) fn mean_load(&self, window: f64) -> Wrench {
-        mean_over(&self.handed, window)
+    pub(crate) fn mean_load(&self, coupling_step: f64) -> Wrench {
+        mean_over(&self.handed, coupling_step)
     }
 
     /// Books the work of that load on the body up to its state `to`.
-    pub(crate) fn book(&mut self, window: f64, to: &BodyState) {
-        self.work += work_on_way(&self.mean_load(window), &self.from, to);
+    pub(crate) fn book(&mut self, coupling_step: f64, to: &BodyState) {
+        self.work += work_on_way(&self.mean_load(coupling_step), &self.from, to);
     }
 }
 

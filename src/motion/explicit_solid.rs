@@ -34,7 +34,7 @@ pub struct SolidSnapshot {
 
 impl SteppedSolid {
     /// Takes the steps of a coupling step, with the bodies of its housing fits as free.
-    pub(crate) fn through_window(&mut self) -> Result<(), SolidError> {
+    pub(crate) fn take_coupling_step(&mut self) -> Result<(), SolidError> {
         let step = self.solid.step_size;
         for k in 0..self.steps {
             // Displacements are half a step ahead of velocities, whose time is that of the bodies.
@@ -49,7 +49,7 @@ impl SteppedSolid {
                     seat.push_both(t, [after, step], displacement, forces);
                 }
                 if let Some(shaft) = &shaft {
-                    shaft.push(forces);
+                    shaft.add_forces(forces);
                 }
             })?;
             if let Some(shaft) = shaft {
@@ -81,8 +81,8 @@ impl SteppedSolid {
     }
 
     /// Sets the steps for a coupling step of this length (s), before the first one.
-    pub(crate) fn step_in(&mut self, window: f64) {
-        self.solid.step_size = window / self.steps as f64;
+    pub(crate) fn step_in(&mut self, coupling_step: f64) {
+        self.solid.step_size = coupling_step / self.steps as f64;
         self.solid.time = 0.5 * self.solid.step_size;
         if let Some(shaft) = &self.shaft {
             shaft.spin_up(&mut self.solid);

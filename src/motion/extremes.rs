@@ -21,7 +21,7 @@ impl Extreme {
 }
 
 /// Contacts below this fraction of the largest load so far do not count for angles.
-const WORTH_A_LOOK: f64 = 0.01;
+const RELEVANT_LOAD: f64 = 0.01;
 
 /// Extremes of the contacts with one race.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,7 +72,7 @@ impl Extremes {
             let race = &mut self.races[side];
             let load = set.table.load[pair];
             race.load.take(load, ball, time);
-            if load < WORTH_A_LOOK * race.load.value {
+            if load < RELEVANT_LOAD * race.load.value {
                 continue;
             }
             // A positive contact angle has the ball at +X of the outer groove's centre and at -X of

@@ -2,7 +2,7 @@
 //!
 //! The stability limit of `dormand-prince` is set by the decay of slip at the steep onset of traction; `rosenbrock` has no
 //! such limit. Where traction does not limit the step, both methods resolve the oscillation of rattling balls, and
-//! `dormand-prince` needs less work per step. Balls that stay loaded hardly oscillate: `rosenbrock` then takes steps of
+//! `dormand-prince` needs less work per step. Balls that stay loaded do not rattle: `rosenbrock` then takes steps of
 //! several periods.
 
 use crate::assembly::lists::Assembly;

@@ -52,7 +52,7 @@ pub struct LaneContact {
     pub slope: [Lane; 6],
     /// Change of slip along t and s and of spin about n per displacement of the ball's centre relative to the hub, 1/s
     /// and 1/(m·s): the contact point moves on both bodies.
-    pub carried: [[Lane; 3]; 3],
+    pub slip_change: [[Lane; 3]; 3],
     /// Traction along t and s and moment about n per unit of normal load.
     pub per_load: [Lane; 3],
     /// Relative motion along the four rows due to prescribed velocities of the hub.

@@ -78,7 +78,7 @@ pub(crate) fn race_contacts(
         let per_radius = dot(normal, contact.outward) / dot(between, contact.outward);
         let reach = laws.ball_radius - 0.5 * contact.overlap;
         let [about_t, about_s, about_n] = here.relative_spin;
-        let carried = [
+        let slip_change = [
             sub(
                 add_scaled(scale(normal, -0.5 * about_s), -reach * per_distance * about_n, across),
                 cross(along, motion.spin),
@@ -89,7 +89,7 @@ pub(crate) fn race_contacts(
             ),
             add_scaled(scale(along, about_t * per_radius), about_s * per_distance, across),
         ];
-        for (row, values) in to.carried.iter_mut().zip(carried) {
+        for (row, values) in to.slip_change.iter_mut().zip(slip_change) {
             for (to, value) in row.iter_mut().zip(values) {
                 to[lane] = value;
             }

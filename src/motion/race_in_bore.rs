@@ -5,7 +5,7 @@ use crate::assembly::lists::Body;
 use crate::assembly::mount::Mount;
 use crate::assembly::state::BodyState;
 use crate::ch2_housing::bore_contact::{
-    ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_reach,
+    ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_distance,
 };
 use crate::ch4_rotor::bore_friction::BoreFriction;
 use crate::kinematics::Pose;
@@ -104,18 +104,18 @@ impl Seat {
     }
 
     /// Kinematics of the body of the race and of the race, after `time` s of free motion.
-    fn carried(&self, body: &BodyState, time: f64) -> [BodyKinematics; 2] {
-        let body = BodyKinematics::new(carried_on(body, time));
+    fn in_free_motion_with_race(&self, body: &BodyState, time: f64) -> [BodyKinematics; 2] {
+        let body = BodyKinematics::new(in_free_motion(body, time));
         [body, kinematics_at_mount(&body, &self.mount)]
     }
 
     fn frame_after(&self, body: &BodyState, time: f64) -> Frame {
-        frame(&self.carried(body, time)[1])
+        frame(&self.in_free_motion_with_race(body, time)[1])
     }
 }
 
 /// A body after `time` s of free motion.
-pub(crate) fn carried_on(body: &BodyState, time: f64) -> BodyState {
+pub(crate) fn in_free_motion(body: &BodyState, time: f64) -> BodyState {
     let turn = UnitQuaternion::from_scaled_axis(Vector3::from(body.spin) * time);
     BodyState {
         position: add_scaled(body.position, time, body.velocity),
@@ -125,8 +125,11 @@ pub(crate) fn carried_on(body: &BodyState, time: f64) -> BodyState {
 }
 
 /// Mean wrench of an impulse and an angular impulse (N·s, N·m·s) over a coupling step (s).
-pub(crate) fn mean_over(handed: &Wrench, window: f64) -> Wrench {
-    Wrench { force: scale(handed.force, 1.0 / window), moment: scale(handed.moment, 1.0 / window) }
+pub(crate) fn mean_over(handed: &Wrench, coupling_step: f64) -> Wrench {
+    Wrench {
+        force: scale(handed.force, 1.0 / coupling_step),
+        moment: scale(handed.moment, 1.0 / coupling_step),
+    }
 }
 
 /// Work of a constant wrench on a body in a coupling step, J.
@@ -238,7 +241,7 @@ impl SeatState {
         self.growth = Growth { radius, ..Growth::default() };
     }
 
-    pub(crate) fn begin_window(&mut self, body: BodyState) {
+    pub(crate) fn begin_coupling_step(&mut self, body: BodyState) {
         self.from = body;
         self.handed = Wrench::default();
     }
@@ -252,14 +255,14 @@ impl SeatState {
         displacement: &[Node],
         forces: &mut [Node],
     ) {
-        let [body, race] = self.seat.carried(&self.from, after);
+        let [body, race] = self.seat.in_free_motion_with_race(&self.from, after);
         let cylinder = self.seat.cylinder(t, self.rim);
         let (cylinder, frame) = (&cylinder, &frame(&race));
         let (nodes, penalty) = (&self.near[..], self.seat.penalty);
         let pressed = Pressed { cylinder, frame, penalty, nodes, displacement };
         let sum = match &mut self.friction {
             None => press(&pressed, forces),
-            Some(friction) => friction.push(&pressed, forces),
+            Some(friction) => friction.step(&pressed, forces),
         };
         self.growth = self.growth.to(cylinder.radius, sum.radial_load);
         self.tested += sum.tested as u64;
@@ -272,21 +275,22 @@ impl SeatState {
     }
 
     /// Mean load of the impulse on the body over the coupling step (N, N·m); counts as its load from here on.
-    pub(crate) fn take_mean_load(&mut self, window: f64) -> Wrench {
+    pub(crate) fn take_mean_load(&mut self, coupling_step: f64) -> Wrench {
         self.impulse = add(self.impulse, self.handed.force);
-        mean_over(&self.handed, window)
+        mean_over(&self.handed, coupling_step)
     }
 
     /// Books the work of that load on the body up to its state `to`.
-    pub(crate) fn book(&mut self, window: f64, to: &BodyState) {
-        self.work += work_on_way(&mean_over(&self.handed, window), &self.from, to);
+    pub(crate) fn book(&mut self, coupling_step: f64, to: &BodyState) {
+        self.work += work_on_way(&mean_over(&self.handed, coupling_step), &self.from, to);
     }
 
     /// Sorts the bore nodes into tested and distant ones.
     pub(crate) fn sort(&mut self, body: &BodyState, solid: &ExplicitSolid) {
         let (cylinder, frame) = self.ahead(body, solid);
         let at = |n: u32| moved(&solid.displacement, n);
-        let (near, far) = split_by_reach(&cylinder, &frame, &self.seat.nodes, at, self.seat.reach);
+        let (near, far) =
+            split_by_distance(&cylinder, &frame, &self.seat.nodes, at, self.seat.reach);
         self.near = near;
         self.far = far.into_iter().map(|node| (node, at(node.node))).collect();
         self.sorted_at = (cylinder, frame);
@@ -337,7 +341,7 @@ impl SeatState {
     /// Resets the counts.
     pub(crate) fn forget_ran(&mut self) {
         self.presses = 0;
-        self.friction.iter_mut().for_each(|friction| friction.pulls = 0);
+        self.friction.iter_mut().for_each(|friction| friction.updates = 0);
     }
 
     /// Number of tested and of distant nodes.

@@ -69,7 +69,7 @@ pub fn put_in_equilibrium(
             .zip(&*housings)
             .map(|(seat, housing)| StaticSeat {
                 name: seat.label.clone(),
-                mount: still.hold_of(&seat.race),
+                mount: still.attachment_of(&seat.race),
                 nominal: housing.bore.reach.nominal,
                 bore: housing.bore,
                 penalty: housing.penalty,

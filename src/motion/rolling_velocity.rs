@@ -8,7 +8,7 @@
 
 use crate::assembly::lists::{Assembly, Bearing};
 use crate::assembly::loads::next_corner;
-use crate::equilibrium::initial::{Equilibrium, at, is_held, orbital_speed};
+use crate::equilibrium::initial::{Equilibrium, at, is_fixed, orbital_speed};
 use crate::equilibrium::statics::Determinacy;
 use crate::members::rigid_body;
 use crate::members::rigid_body::kinematics_at_mount;
@@ -153,12 +153,13 @@ fn one_branch(assembly: &Assembly, all: [&Equilibrium; 3]) -> bool {
 fn strays(assembly: &Assembly, [now, _, second]: [&Equilibrium; 3], allowed: f64) -> bool {
     let Determinacy::Indeterminate { free_directions } = &now.determinacy else { return false };
     // Unknowns of the search: free bodies, tilts times their bearing's pitch radius.
-    let unknowns = assembly.bodies.iter().enumerate().filter(|(_, body)| !is_held(body));
+    let unknowns = assembly.bodies.iter().enumerate().filter(|(_, body)| !is_fixed(body));
     let moved: Vec<f64> = unknowns
         .flat_map(|(body, _)| {
-            let sits = |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
+            let is_on_body =
+                |bearing: &&Bearing| bearing.mounts.iter().any(|mount| mount.body == body);
             let pitch =
-                assembly.bearings.iter().find(sits).map_or(1.0, |b| b.geometry.pitch_radius);
+                assembly.bearings.iter().find(is_on_body).map_or(1.0, |b| b.geometry.pitch_radius);
             let [from, to] = [now, second].map(|of| of.place(assembly, body));
             let scale = [1.0, 1.0, 1.0, pitch, pitch];
             std::array::from_fn::<f64, 5, _>(|i| scale[i] * (to[i] - from[i]))

@@ -188,7 +188,7 @@ fn accepted(
 }
 
 /// Records the evaluated state in the extremes of each bearing.
-fn see(extremes: &mut [Extremes], system: &System, time: f64) {
+fn record_extremes(extremes: &mut [Extremes], system: &System, time: f64) {
     for (index, extremes) in extremes.iter_mut().enumerate() {
         extremes.record(system, index, time);
     }
@@ -259,7 +259,7 @@ impl Simulation {
         system.evaluate(time, &state, &mut rates);
         let balance = Balance::from_here(&system, &state);
         let mut extremes = vec![Extremes::default(); system.sets.len()];
-        see(&mut extremes, &system, time);
+        record_extremes(&mut extremes, &system, time);
         let step_watch = StepWatch {
             smallest: limit.map(|limit| limit.step),
             stiffest: if limit.is_some() { stiffness(&system) } else { Stiffness::default() },
@@ -348,7 +348,7 @@ impl Simulation {
             Stepper::RungeKutta(integrator) => {
                 let t = self.time;
                 integrator.step(system, t, step, state, |system, state| {
-                    see(extremes, system, t);
+                    record_extremes(extremes, system, t);
                     balanced = balance.check((system, state), options, t, self.steps);
                 });
                 step
@@ -364,7 +364,7 @@ impl Simulation {
                 integrator.accept();
                 std::mem::swap(state, &mut attempt.state);
                 // The last stage is the new state.
-                see(extremes, system, t + taken);
+                record_extremes(extremes, system, t + taken);
                 balanced = balance.check((system, state), options, t + taken, self.steps);
                 taken
             }
@@ -379,7 +379,7 @@ impl Simulation {
                 std::mem::swap(state, &mut attempt.state);
                 system.tidy(t + taken, state);
                 integrator.accept(system, t + taken, taken, &attempt.state, state);
-                see(extremes, system, t + taken);
+                record_extremes(extremes, system, t + taken);
                 balanced = balance.check((system, state), options, t + taken, self.steps);
                 taken
             }
@@ -416,7 +416,7 @@ impl Simulation {
     /// Loads, energies and ledger at the present time.
     pub fn snapshot(&mut self) -> Snapshot {
         self.system.evaluate(self.time, &self.state, &mut self.rates);
-        see(&mut self.extremes, &self.system, self.time);
+        record_extremes(&mut self.extremes, &self.system, self.time);
         self.balance.snapshot(&self.system, &self.state, self.time)
     }
 

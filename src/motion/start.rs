@@ -4,7 +4,7 @@ use crate::assembly::lists::{Assembly, Bearing};
 use crate::assembly::loads::Drive;
 use crate::assembly::state::{BODY, BodyState, Layout, Places};
 use crate::ch2_housing::bearing::cage::Guidance;
-use crate::equilibrium::initial::{at_start, given_speed, orbital_speed, race_speeds};
+use crate::equilibrium::initial::{at_start, orbital_speed, prescribed_speed, race_speeds};
 use crate::equilibrium::statics::StaticsError;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::members::rigid_body;
@@ -27,7 +27,7 @@ use std::f64::consts::TAU;
 /// No equilibrium under the loads at t = 0.
 pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
     if !assembly.solids.is_empty() {
-        let held = at_equilibrium(&assembly.with_seats_held())?;
+        let held = at_equilibrium(&assembly.with_seats_fixed())?;
         return Ok(with_solids(assembly, &held));
     }
     let now = at_start(assembly)?;
@@ -65,7 +65,7 @@ fn with_solids(assembly: &Assembly, state: &[f64]) -> Vec<f64> {
     let mut whole = vec![0.0; places.state_len()];
     let bodies = places.body(assembly.bodies.len());
     whole[..bodies].copy_from_slice(&state[..bodies]);
-    let bent = Places::of(&assembly.with_seats_held()).shafts(assembly);
+    let bent = Places::of(&assembly.with_seats_fixed()).shafts(assembly);
     for ((shaft, from), to) in assembly.shafts.iter().zip(bent).zip(places.shafts(assembly)) {
         whole[to..to + shaft.entries()].copy_from_slice(&state[from..from + shaft.entries()]);
     }
@@ -100,7 +100,7 @@ fn fill(assembly: &Assembly, bodies: &[[f64; 5]], known: Option<Known>, rates: &
     };
     let mut now = Vec::with_capacity(bodies.len());
     for (index, (body, at)) in assembly.bodies.iter().zip(bodies).enumerate() {
-        let moved = moving(at, &rates.bodies[index], given_speed(body, 0.0));
+        let moved = moving(at, &rates.bodies[index], prescribed_speed(body, 0.0));
         write(&mut state, places.body(index), &moved);
         now.push(BodyKinematics::new(moved));
     }

@@ -16,7 +16,7 @@ use crate::motion::stability::step_limit;
 use crate::motion::system::System;
 
 /// Steps between two checks of the contacts.
-pub const LOOK_EVERY: u64 = 16;
+pub const CHECK_EVERY: u64 = 16;
 
 /// Factor by which a prescribed step may exceed the limit: the uncertainty of the limit.
 pub const TOLERATED: f64 = 1.1;
@@ -47,8 +47,8 @@ impl Stiffness {
     /// Factor by which the limit may have come down since `before`.
     fn growth(&self, before: &Stiffness) -> f64 {
         let ratio = |now: f64, before: f64| if now > 0.0 { now / before } else { 0.0 };
-        let swings = ratio(self.oscillation, before.oscillation).sqrt();
-        swings.max(ratio(self.decay, before.decay))
+        let oscillation = ratio(self.oscillation, before.oscillation).sqrt();
+        oscillation.max(ratio(self.decay, before.decay))
     }
 
     fn largest(&self, other: &Stiffness) -> Stiffness {

@@ -54,7 +54,7 @@ pub struct System {
     /// Latest time at which profiles are read, s: just before the corner at which a step ends, infinite otherwise.
     pub latest: f64,
     pub(crate) loads: Vec<Wrench>,
-    pub(crate) swing: UnbalanceCoupling,
+    pub(crate) unbalance_coupling: UnbalanceCoupling,
 }
 
 impl System {
@@ -84,7 +84,7 @@ impl System {
             sets,
             outside: vec![None; bodies.len()],
             loads: vec![Wrench::default(); bodies.len()],
-            swing: UnbalanceCoupling::new(&assembly),
+            unbalance_coupling: UnbalanceCoupling::new(&assembly),
             bodies,
             work: Work::default(),
             ran: StageCounts::new(
@@ -122,11 +122,11 @@ impl System {
     }
 
     /// Forces of a connection; call after [`System::evaluate`] at the same state.
-    pub fn pull(&self, state: &[f64], connection: usize) -> SpringForces {
+    pub fn connection_forces(&self, state: &[f64], connection: usize) -> SpringForces {
         let (at, ends) = (self.connections[connection], self.ends(connection));
         let connection = &self.assembly.connections[connection];
         let elongated = &state[at..at + 6 * connection.maxwell().len()];
-        connection.pull(ends.each_ref(), elongated)
+        connection.forces(ends.each_ref(), elongated)
     }
 
     /// [`Connection::reach`] as evaluated last.
@@ -166,9 +166,9 @@ impl System {
             set.evaluate(bearing, gravity, driver, want, state, rates, &mut ledger, work, own);
             self.ran.whole.add(Stage::Gravity, own.take(Stage::Gravity));
             for (side, mount) in bearing.mounts.iter().enumerate() {
-                let sits = (&set.races[side], &self.bodies[mount.body]);
+                let attached = (&set.races[side], &self.bodies[mount.body]);
                 let loads = &set.on_races[side];
-                let loads = wrench_on_body((&holds[side], mount), sits, loads, bent, rates);
+                let loads = wrench_on_body((&holds[side], mount), attached, loads, bent, rates);
                 self.loads[mount.body].add(&loads);
             }
             if let Some(cage) = &bearing.cage {
@@ -181,18 +181,18 @@ impl System {
             let (at, ends) = (self.connections[index], self.ends(index));
             let elements = connection.maxwell();
             let elongated = &state[at..at + 6 * elements.len()];
-            let pull = connection.pull([&ends[0], &ends[1]], elongated);
+            let forces = connection.forces([&ends[0], &ends[1]], elongated);
             for (k, element) in elements.iter().enumerate() {
                 for i in 0..6 {
                     let e = at + 6 * k + i;
-                    rates[e] = pull.rates[i] - state[e] / element.relaxation_time;
+                    rates[e] = forces.rates[i] - state[e] / element.relaxation_time;
                 }
             }
-            ledger[Ledger::Foundation as usize] += pull.loss;
+            ledger[Ledger::Foundation as usize] += forces.loss;
             for (end, mount) in connection.ends.iter().enumerate() {
-                let sits = (&ends[end], &self.bodies[mount.body]);
+                let attached = (&ends[end], &self.bodies[mount.body]);
                 let hold = &holds.connections[index][end];
-                let loads = wrench_on_body((hold, mount), sits, &pull.on[end], bent, rates);
+                let loads = wrench_on_body((hold, mount), attached, &forces.on[end], bent, rates);
                 self.loads[mount.body].add(&loads);
             }
             self.ran.whole.add(Stage::Springs, 1);
@@ -264,8 +264,8 @@ impl System {
             let gone = &state[at..at + solid.count()];
             let pushes = &mut rates[at + solid.count()..at + 2 * solid.count()];
             let loads = now.evaluate(seat, solid, &race, t, gone, pushes);
-            let sits = (&race, body);
-            let loads = wrench_on_body((hold, &seat.race), sits, &loads, bent, rates);
+            let attached = (&race, body);
+            let loads = wrench_on_body((hold, &seat.race), attached, &loads, bent, rates);
             self.loads[seat.race.body].add(&loads);
             // Growth of the race does work against the contact.
             ledger[Ledger::Drives as usize] += now.contact.radial_load * seat.radius.rate(t);

@@ -75,8 +75,8 @@ impl TurningFrames {
     pub fn rates_to_frame(&self, state: &[f64], rates: &mut [f64]) {
         for frame in &self.frames {
             let at = frame.body + ORIENTATION;
-            let carried = quaternion_rate(quaternion(state, at), frame.spin);
-            let [w, i, j, k] = [0, 1, 2, 3].map(|i| rates[at + i] - carried[i]);
+            let frame_rate = quaternion_rate(quaternion(state, at), frame.spin);
+            let [w, i, j, k] = [0, 1, 2, 3].map(|i| rates[at + i] - frame_rate[i]);
             put(rates, at, frame.turned.conjugate() * Quaternion::new(w, i, j, k));
         }
     }

@@ -155,7 +155,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Holds {
+pub enum FolderContent {
     Nothing,
     Run,
     /// Other results, by the `kind` of their summary.
@@ -179,7 +179,7 @@ const TABLES: [&str; 7] = [
 ///
 /// # Errors
 /// [`FolderError::Foreign`] for a file that a command would replace and that another program wrote.
-pub fn holds(folder: &Path) -> Result<Holds, FolderError> {
+pub fn content(folder: &Path) -> Result<FolderContent, FolderError> {
     let there = |name: &str| folder.join(name).exists();
     let foreign = |name: &str, reason: &str| FolderError::Foreign {
         file: folder.join(name),
@@ -201,27 +201,27 @@ pub fn holds(folder: &Path) -> Result<Holds, FolderError> {
     // A partial pack has no manifest yet.
     let manifest = json::read(&folder.join(MANIFEST)).is_ok_and(|manifest| is_own(&manifest));
     if manifest || (summary.is_some() && there(RESOLVED)) {
-        return Ok(Holds::Pack);
+        return Ok(FolderContent::Pack);
     }
     if sweep.is_some() {
-        return Ok(Holds::Sweep);
+        return Ok(FolderContent::Sweep);
     }
     if state.is_some() {
-        return Ok(Holds::Run);
+        return Ok(FolderContent::Run);
     }
     if let Some(summary) = summary {
         return Ok(match summary["kind"].as_str().unwrap_or("results") {
-            kind if kind.starts_with("run") => Holds::Run,
-            kind => Holds::Results(kind.to_string()),
+            kind if kind.starts_with("run") => FolderContent::Run,
+            kind => FolderContent::Results(kind.to_string()),
         });
     }
     // A process killed between its tables and its record leaves the column names or the list of fields.
     if there("series.columns.json") || there("fields.pvd") {
-        return Ok(Holds::Nothing);
+        return Ok(FolderContent::Nothing);
     }
     match TABLES.iter().find(|name| there(name)) {
         Some(name) => Err(foreign(name, "no record of this program is in the folder")),
-        None => Ok(Holds::Nothing),
+        None => Ok(FolderContent::Nothing),
     }
 }
 

@@ -36,7 +36,7 @@ pub mod fields;
 pub mod folder;
 pub mod journal;
 pub mod json;
-pub mod natural_motions;
+pub mod natural_modes;
 pub mod npy;
 pub mod pack;
 pub mod pictures;

@@ -17,7 +17,7 @@ pub struct RunTable {
     pub window: Range<usize>,
     /// Column prefix of each bearing; empty for a single bearing.
     pub bearings: Vec<String>,
-    /// Races, cages, other bodies and watched sections that may have columns.
+    /// Races, cages, other bodies and probes that may have columns.
     pub bodies: Vec<Moving>,
     pub sensors: Vec<(String, String)>,
 }
@@ -39,7 +39,7 @@ impl Moving {
     }
 }
 
-/// Bodies of the bearings with these prefixes, then labelled bodies, then watched sections.
+/// Bodies of the bearings with these prefixes, then labelled bodies, then probes.
 fn moving(bearings: &[String], assembly: Option<&Assembly>) -> Vec<Moving> {
     let mut bodies = Vec::new();
     for prefix in bearings {
@@ -53,7 +53,7 @@ fn moving(bearings: &[String], assembly: Option<&Assembly>) -> Vec<Moving> {
     bodies.extend(labels.map(|label| Moving::of(label.clone(), label)));
     for shaft in &assembly.shafts {
         let Some(label) = &assembly.bodies[shaft.body].label else { continue };
-        bodies.extend(shaft.watched.iter().map(|(name, _)| Moving {
+        bodies.extend(shaft.probes.iter().map(|(name, _)| Moving {
             column: format!("{label}_{name}"),
             title: format!("{label} at {name}"),
             speed: format!("{label}_speed"),

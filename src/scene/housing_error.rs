@@ -26,7 +26,7 @@ pub enum HousingSetupError {
          {:.4} mm wide and centred at x = {:.4} mm: {lies}. Hint: {MOVE}; also check width, position and the mesh's unit",
         1e3 * *.width, 1e3 * *.centre
     )]
-    BesideTheRace { count: usize, width: f64, centre: f64, lies: Lies },
+    NoNodesUnderRace { count: usize, width: f64, centre: f64, lies: Lies },
     #[error(
         "housing.bore: \"{bore}\" is flat: all its {faces} faces, {:.4} mm^2, have the normal ({:.3}, {:.3}, {:.3}). Name \
          a cylinder about the race's axis; the solid's surfaces are: {}",
@@ -66,7 +66,7 @@ pub enum HousingSetupError {
          allowed: {} to {}{}",
         1e3 * *.width, SHARES.start(), SHARES.end(), seat_hint(.beside)
     )]
-    CoarseSeat { width: f64, share: f64, beside: Option<String> },
+    CoarseBore { width: f64, share: f64, beside: Option<String> },
     #[error(
         "housing.width: the {count} nodes of the bore under the outer race, {:.4} mm wide, are in one row around it, \
          {:+.4} mm from its middle, which cannot resist tilt; at least two rows are needed. Hint: refine the mesh \
@@ -79,7 +79,7 @@ pub enum HousingSetupError {
         "housing.bore: all {count} nodes of \"{bore}\" under the race are fixed by [[solid.fixed]], so the bore cannot \
          deform. Hint: fix another set, or write method = \"rigid\" in [housing]"
     )]
-    HeldBore { bore: String, count: usize },
+    FixedBore { bore: String, count: usize },
     #[error("housing: the interference of {:.1} um is too large. Allowed: up to {:.1} um",
         1e6 * *.interference, 1e6 * *.limit)]
     FitTooLarge { interference: f64, limit: f64 },
@@ -92,7 +92,7 @@ pub enum HousingSetupError {
         "solid.fixed.{axis}: the housing methods `quasi-static` and `reduced` need supports at zero; write \
          {axis} = true, or method = \"explicit\" in [housing]"
     )]
-    MovedSupport { index: usize, axis: &'static str },
+    PrescribedSupport { index: usize, axis: &'static str },
 }
 
 /// Hint for a mesh that is not at its bearing.
@@ -147,17 +147,17 @@ impl HousingSetupError {
             | HousingSetupError::FlatBore { .. }
             | HousingSetupError::FarFromTheRace { .. }
             | HousingSetupError::NotRound { .. }
-            | HousingSetupError::HeldBore { .. }
+            | HousingSetupError::FixedBore { .. }
             | HousingSetupError::OutOfRound { .. } => About::key("housing.bore"),
             HousingSetupError::StraightBore { .. } => About::key("solid.mesh.file"),
-            HousingSetupError::BesideTheRace { .. }
+            HousingSetupError::NoNodesUnderRace { .. }
             | HousingSetupError::OneRow { .. }
-            | HousingSetupError::CoarseSeat { .. } => About::key("housing.width"),
+            | HousingSetupError::CoarseBore { .. } => About::key("housing.width"),
             HousingSetupError::FitTooLarge { .. } => About::key("housing.outer_radius"),
             HousingSetupError::VaryingLoad { index } => {
                 About::Item { table: "solid.load", index: *index, key: "set" }
             }
-            HousingSetupError::MovedSupport { index, axis: key } => {
+            HousingSetupError::PrescribedSupport { index, axis: key } => {
                 About::Item { table: "solid.fixed", index: *index, key }
             }
         })

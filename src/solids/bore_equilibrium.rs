@@ -35,7 +35,7 @@ pub struct RaceLoad {
 pub enum Axial {
     /// A support beside the bore, such as a shoulder or a ring: the named assumption of all housings.
     #[default]
-    Held,
+    Fixed,
     /// None: such loads are an error.
     Free,
 }
@@ -81,7 +81,7 @@ pub enum BoreError {
         "race and bore move {motion:.3e} m towards each other, beyond the {travel:.3e} m within \
          which nodes were kept; condense with a larger travel"
     )]
-    BeyondReach { motion: f64, travel: f64 },
+    BeyondRange { motion: f64, travel: f64 },
     #[error(
         "the lateral displacement of the race is so large that the gaps of its nodes do not converge in {rounds} rounds. Hint: less load, a stiffer \
          housing, or a start in nominal positions (numerics.start = \"nominal\")"
@@ -278,7 +278,7 @@ impl<'a> BoreSearch<'a> {
     ///
     /// # Errors
     ///
-    /// [`BoreError::BeyondReach`], [`BoreError::NotFinite`].
+    /// [`BoreError::BeyondRange`], [`BoreError::NotFinite`].
     pub fn at_pose(&mut self, fit: &Fit, pose: [f64; 4]) -> Result<BoreState, BoreError> {
         self.answer(fit, pose)?;
         self.state()
@@ -421,7 +421,7 @@ impl<'a> BoreSearch<'a> {
     ///
     /// # Errors
     ///
-    /// [`BoreError::BeyondReach`].
+    /// [`BoreError::BeyondRange`].
     pub fn state(&mut self) -> Result<BoreState, BoreError> {
         let stiffness = self.motion().map_or(Matrix4::zeros(), |motion| motion.stiffness);
         let (bore, pose, loads) = (self.bore, self.pose, &self.loads);
@@ -438,7 +438,7 @@ impl<'a> BoreSearch<'a> {
                 + largest(&outward)
                 + norm([0.0, pose[2], pose[3]]) * 0.5 * bore.reach.width;
             if motion.is_nan() || motion > travel {
-                return Err(BoreError::BeyondReach { motion, travel });
+                return Err(BoreError::BeyondRange { motion, travel });
             }
         }
         let half_work = |of: &[f64]| 0.5 * of.iter().zip(loads).map(|(u, p)| u * p).sum::<f64>();

@@ -15,7 +15,7 @@ use crate::numeric::sparse::{Factor, FactorError, Memory};
 use crate::solids::equilibrium_error::{Pivot, free_text};
 use crate::solids::memory::condensed;
 use crate::solids::model::SolidModel;
-use crate::solids::modes::{ModeError, ModeOptions, Modes, modes_of_held};
+use crate::solids::modes::{ModeError, ModeOptions, Modes, modes_of_fixed};
 use crate::solids::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
 use nalgebra::Vector3;
 use std::fmt;
@@ -68,7 +68,7 @@ pub enum CondenseError {
         "node {node} has a prescribed displacement of {value:.3e} m; a condensed housing is fixed at \
          zero"
     )]
-    MovedSupport { node: u32, value: f64 },
+    PrescribedSupport { node: u32, value: f64 },
     #[error("bore node {node} is on the race's axis, where there is no radial direction")]
     OnAxis { node: u32 },
 }
@@ -95,7 +95,7 @@ pub struct Sizes {
     /// Nodes left out beside the race.
     pub beside: usize,
     /// Nodes left out for their distance from the race.
-    pub out_of_reach: usize,
+    pub outside_range: usize,
     pub kept: usize,
     /// Free displacement components of the solid.
     pub unknowns: usize,
@@ -168,12 +168,12 @@ fn pick(
     for held in &model.problem.prescribed {
         let value = held.profile.value(0.0);
         if value != 0.0 || !held.profile.is_zero() {
-            return Err(CondenseError::MovedSupport { node: held.node, value });
+            return Err(CondenseError::PrescribedSupport { node: held.node, value });
         }
     }
     let frame = Frame::new(&reach.nominal);
     let mut sizes =
-        Sizes { bore: bore.len(), beside: 0, out_of_reach: 0, kept: 0, unknowns: unknowns.count };
+        Sizes { bore: bore.len(), beside: 0, outside_range: 0, kept: 0, unknowns: unknowns.count };
     let mut nodes = Vec::with_capacity(bore.len());
     for contact in bore {
         let arm = frame.seen(contact.place);
@@ -181,7 +181,7 @@ fn pick(
         if !is_under(arm[0], reach.width) {
             sizes.beside += 1;
         } else if reach.travel.is_some_and(|travel| distance - reach.radius > travel) {
-            sizes.out_of_reach += 1;
+            sizes.outside_range += 1;
         } else if distance == 0.0 {
             return Err(CondenseError::OnAxis { node: contact.node });
         } else {
@@ -349,9 +349,9 @@ impl CondensedBore {
     ///
     /// # Errors
     ///
-    /// See [`modes_of_held`].
+    /// See [`modes_of_fixed`].
     pub fn modes(&self, model: &SolidModel, options: &ModeOptions) -> Result<Modes, ModeError> {
-        modes_of_held(model, &self.unknowns, &self.factor, options)
+        modes_of_fixed(model, &self.unknowns, &self.factor, options)
     }
 
     /// The unknowns of the solid.

@@ -54,7 +54,7 @@ pub enum EquilibriumError {
          "no equilibrium found {}: beyond that the stiffness is not positive definite ({pivot}). At rest it is, so \
          that no part is free to move: the load is too large for the body, or the body buckles. By the linear \
          law the whole load would move it by {} mm (at {}), and it is {} mm across; {}",
-        reached_text(*reached, moved), millimetres(linear.value), place(&linear.at), millimetres(*size),
+        reached_load_text(*reached, moved), millimetres(linear.value), place(&linear.at), millimetres(*size),
         remedy(*poisson_ratio)
     )]
     TooLarge {
@@ -92,7 +92,7 @@ pub fn free_text(pivot: &Pivot) -> String {
 }
 
 /// The last equilibrium of a search.
-fn reached_text(reached: f64, moved: &Placed) -> String {
+fn reached_load_text(reached: f64, moved: &Placed) -> String {
     if reached > 0.0 {
         let moved_by = millimetres(moved.value);
         return format!(

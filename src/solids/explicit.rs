@@ -145,7 +145,7 @@ impl ExplicitSolid {
         }
         if self.method == ExplicitMethod::CentralDifferences {
             // Back by half a step, so that the first full kick ends half a step ahead.
-            self.evaluate(History::Look);
+            self.evaluate(History::Trial);
             let acceleration = self.acceleration();
             for (rate, acceleration) in self.rate.iter_mut().zip(acceleration) {
                 for i in 0..3 {
@@ -382,7 +382,7 @@ impl ExplicitSolid {
             ExplicitMethod::CentralDifferences => 0.5 * self.step_size,
             ExplicitMethod::RungeKutta => 0.0,
         };
-        self.evaluate(History::Look);
+        self.evaluate(History::Trial);
         contacts(self.time, &self.displacement, &mut self.force);
         let acceleration = self.acceleration();
         self.rate
@@ -416,7 +416,7 @@ impl ExplicitSolid {
             Some(rubber) => rubber.network_energy(&self.displacement),
             None => strain_energy(&self.model, &self.displacement),
         };
-        self.evaluate(History::Look);
+        self.evaluate(History::Trial);
         contacts(self.time, &self.displacement, &mut self.force);
         let ahead = match self.method {
             ExplicitMethod::CentralDifferences => self.step_size,

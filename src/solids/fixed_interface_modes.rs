@@ -12,7 +12,7 @@ use crate::solids::bore_equilibrium::BoreSearch;
 use crate::solids::condensation::CondensedBore;
 use crate::solids::model::SolidModel;
 use crate::solids::modes::Mode;
-use crate::solids::reduction::{ReduceError, lowest_shapes, natural_shapes};
+use crate::solids::reduction::{ReduceError, lowest_modes, natural_modes};
 use crate::vibrations::quasi_static_limit::{FixedInterfaceMode, HousingMass, housing_mass};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
@@ -32,22 +32,22 @@ pub enum Natural {
 /// # Errors
 ///
 /// Modes that are not found.
-/// Natural shapes that are not found.
-pub fn natural_shapes_of(
+/// Natural modes that are not found.
+pub fn natural_modes_of(
     model: &SolidModel,
     bore: &CondensedBore,
     natural: Natural,
 ) -> Result<(Vec<Mode>, f64), ReduceError> {
     match natural {
-        Natural::UpTo(frequency) => natural_shapes(model, bore, frequency),
-        Natural::Lowest(count) => lowest_shapes(model, bore, count),
+        Natural::UpTo(frequency) => natural_modes(model, bore, frequency),
+        Natural::Lowest(count) => lowest_modes(model, bore, count),
     }
 }
 
 /// The housing of a search about the last equilibrium of its bore: displacements that follow the race, the body of
 /// index `race` among the moving ones, and modes with the race fixed from the `natural` modes; `damping` of its
 /// elements in 1/s.
-pub fn swinging_housing(
+pub fn vibrating_housing(
     search: &BoreSearch,
     race: usize,
     natural: &[Mode],
@@ -66,7 +66,8 @@ fn fixed_interface_modes(search: &BoreSearch, natural: &[Mode]) -> Vec<FixedInte
         return Vec::new();
     }
     let bore = search.bore();
-    let held: Vec<Vec<Vec3>> = natural.iter().map(|mode| held_back(search, &mode.shape)).collect();
+    let held: Vec<Vec<Vec3>> =
+        natural.iter().map(|mode| with_race_fixed(search, &mode.shape)).collect();
     let followers = search.loads_by_pose().map(|loads| bore.response(&loads));
     let inner = |a: &[Vec3], b: &[Vec3]| -> f64 {
         a.iter().zip(b).zip(&bore.mass).map(|((u, v), mass)| mass * dot(*u, *v)).sum()
@@ -94,7 +95,7 @@ fn fixed_interface_modes(search: &BoreSearch, natural: &[Mode]) -> Vec<FixedInte
 }
 
 /// A displacement of all nodes with the response to the forces of the fixed race at the contact nodes.
-fn held_back(search: &BoreSearch, shape: &[Vec3]) -> Vec<Vec3> {
+fn with_race_fixed(search: &BoreSearch, shape: &[Vec3]) -> Vec<Vec3> {
     let bore = search.bore();
     let outward = bore.nodes.iter().map(|node| {
         let out = bore.to_world([0.0, node.normal[0], node.normal[1]]);

@@ -110,8 +110,8 @@ impl FreeBody<'_> {
             frequencies.push((self.stiffness * &shape).dot(&shape).sqrt());
             shapes.set_column(column - first, &shape);
         }
-        let told = |frequency: &f64| frequency.is_finite() && *frequency > 0.0;
-        if !frequencies.iter().all(told) {
+        let is_positive = |frequency: &f64| frequency.is_finite() && *frequency > 0.0;
+        if !frequencies.iter().all(is_positive) {
             return Err(ShapesError::Range);
         }
         Ok((frequencies, shapes))

@@ -129,7 +129,7 @@ pub fn modes_over(
 /// # Errors
 ///
 /// See [`modes`].
-pub fn modes_of_held(
+pub fn modes_of_fixed(
     model: &SolidModel,
     unknowns: &Unknowns,
     factor: &Factor,

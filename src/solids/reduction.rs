@@ -205,7 +205,7 @@ const ROUGH_RESIDUAL: f64 = 1e-4;
 /// # Errors
 ///
 /// More than some hundred modes; those of [`CondensedBore::modes`].
-pub fn natural_shapes(
+pub fn natural_modes(
     model: &SolidModel,
     bore: &CondensedBore,
     frequency: f64,
@@ -226,7 +226,7 @@ pub fn natural_shapes(
 /// # Errors
 ///
 /// Those of [`CondensedBore::modes`].
-pub fn lowest_shapes(
+pub fn lowest_modes(
     model: &SolidModel,
     bore: &CondensedBore,
     count: usize,
@@ -273,7 +273,7 @@ pub fn reduce(
     loads: &LoadPatterns,
     options: &ReduceOptions,
 ) -> Result<Reduction, ReduceError> {
-    let (modes, first_left_out) = natural_shapes(model, bore, options.modes_to)?;
+    let (modes, first_left_out) = natural_modes(model, bore, options.modes_to)?;
     let lowest = modes.first().map_or(first_left_out, |mode| mode.frequency);
     let natural: Vec<(f64, Vec<Vec3>)> =
         modes.into_iter().map(|mode| (TAU * mode.frequency, mode.shape)).collect();

@@ -76,7 +76,7 @@ pub fn first_inverted(model: &SolidModel, displacement: &[Vec3]) -> Option<(usiz
 
 /// Results of a check of a moving solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Look {
+pub struct StressCheck {
     /// See [`first_inverted`].
     pub inverted: Option<(usize, f64)>,
     /// Largest von Mises stress at a quadrature point, Pa.
@@ -84,8 +84,8 @@ pub struct Look {
 }
 
 /// [`first_inverted`] and the largest stress in one pass.
-pub fn look(model: &SolidModel, displacement: &[Vec3]) -> Look {
-    let mut found = Look::default();
+pub fn check(model: &SolidModel, displacement: &[Vec3]) -> StressCheck {
+    let mut found = StressCheck::default();
     each_point(model, displacement, |element, _, h| {
         let ratio = 1.0 + volume_change(h);
         let sound = ratio > 0.0;

@@ -61,7 +61,7 @@ impl WorkerPool {
 /// The force loop of a solid, shared by threads.
 #[derive(Debug)]
 pub(crate) struct Partition {
-    crew: WorkerPool,
+    workers: WorkerPool,
     parts: Vec<Part>,
 }
 
@@ -79,11 +79,11 @@ struct Part {
 impl ExplicitSolid {
     /// Evaluates the elements in this number of parts on a thread pool, with the same bits; in fewer parts for few
     /// elements, and in one for rubber.
-    pub fn share(&mut self, crew: &WorkerPool, parts: usize) {
+    pub fn share(&mut self, workers: &WorkerPool, parts: usize) {
         let parts = if self.rubber.is_some() { 1 } else { parts };
         let ranges = ranges(&self.model.problem, parts);
         self.team = (ranges.len() > 1).then(|| Partition {
-            crew: crew.clone(),
+            workers: workers.clone(),
             parts: ranges.into_iter().map(|owned| part(&self.model, owned)).collect(),
         });
     }
@@ -107,7 +107,7 @@ impl Partition {
             work.push((part, own));
             left = others;
         }
-        let done: Result<(), ()> = self.crew.each(&mut work, |(part, own)| {
+        let done: Result<(), ()> = self.workers.each(&mut work, |(part, own)| {
             part.evaluate(displacement);
             for (sum, force) in own.iter_mut().zip(&part.force) {
                 for i in 0..4 {

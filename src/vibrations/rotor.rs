@@ -102,7 +102,7 @@ impl RotorModel {
         let stiff =
             (!vibrations.relaxing.is_empty()).then(|| vibrations.stiffened(|_| f64::INFINITY));
         let (basis, natural) =
-            natural_motions(stiff.as_ref().unwrap_or(vibrations), modes, &vibrations.relaxing)?;
+            natural_modes(stiff.as_ref().unwrap_or(vibrations), modes, &vibrations.relaxing)?;
         let LinearSystem { mass, stiffness, damping, gyroscopic, circulating, pairs, .. } =
             vibrations;
         let project = |matrix: &DMatrix<f64>| basis.transpose() * matrix * &basis;
@@ -227,7 +227,7 @@ impl RotorModel {
 /// Basis of unit modal mass, and its frequencies at rest, rad/s: the lowest modes, and static corrections for
 /// gyroscopic moments and dashpots of the lowest of these and for forces of `relaxing` springs, to which modes alone
 /// converge slowly.
-fn natural_motions(
+fn natural_modes(
     of: &LinearSystem,
     modes: usize,
     relaxing: &[Relaxing],

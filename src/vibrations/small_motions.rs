@@ -125,7 +125,7 @@ pub fn whirling(
     for of in &mut all.relaxing {
         of.levers = of.levers.clone().resize_horizontally(size, 0.0);
     }
-    let (places, rows) = told(&model, still, &moved);
+    let (places, rows) = station_rows(&model, still, &moved);
     let rows = rows.resize_horizontally(size, 0.0);
     let stations: Vec<f64> = (0..places.len()).map(|place| place as f64).collect();
     let model = RotorModel::of(&all, MODES, stations, Some(&rows))?;
@@ -148,7 +148,7 @@ impl SmallMotionModel {
 
 /// Undamped natural modes at rest, lowest first. Each has the storage stiffness of the Maxwell elements at its own
 /// frequency, found from above, starting with unrelaxed springs.
-pub fn natural_motions(
+pub fn natural_modes(
     still: &StaticAssembly,
     found: &AssemblySolution,
     bodies: &[MovingBody],
@@ -290,7 +290,11 @@ fn over_unknowns(
 }
 
 /// Names of loaded bodies and of sections, and their y, z and tilts per unit of every unknown.
-fn told(model: &Model, still: &StaticAssembly, moved: &[Moved]) -> (Vec<String>, DMatrix<f64>) {
+fn station_rows(
+    model: &Model,
+    still: &StaticAssembly,
+    moved: &[Moved],
+) -> (Vec<String>, DMatrix<f64>) {
     let size = model.scale.len();
     let mut places = Vec::new();
     let mut rows: Vec<DMatrix<f64>> = Vec::new();

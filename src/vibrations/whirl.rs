@@ -175,8 +175,9 @@ impl RotorModel {
         }
         let moves = self.relaxing.is_empty() || {
             let yielding = self.relaxing.iter().map(|of| of.yielding(near, speed, &modal));
-            let swings = value.re > 0.0 || yielding.sum::<f64>() <= YIELDING * 2.0 * near.norm();
-            swings && grown * near.norm_sqr() > MOVES
+            let oscillates =
+                value.re > 0.0 || yielding.sum::<f64>() <= YIELDING * 2.0 * near.norm();
+            oscillates && grown * near.norm_sqr() > MOVES
         };
         moves.then(|| self.motion(value, modal))
     }

@@ -97,7 +97,7 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     let mut connection = spring();
     connection.ends = [Mount::at_centre(1), Mount { body: 0, along: 0.01, reversed: false }];
     let loads = [200.0, -100.0, 300.0, 1.5, -2.0];
-    let held = Place::Held(Pose::identity());
+    let held = Place::Fixed(Pose::identity());
     let loaded = Loaded {
         axes: None,
         conditions: loads.map(Condition::Load),
@@ -154,7 +154,7 @@ fn a_body_on_springs_stands_where_its_load_is_carried() {
     // Statics turns by Euler angles without spin (2.16), a motion without speed about its own axis: a moment about
     // the axis works on the tilt about Y by the sine of the other one.
     let section = kinematics_at_mount(&system.bodies[0], &assembly.connections[0].ends[1]);
-    let pull = assembly.connections[0].pull([&system.bodies[1], &section], &[]);
+    let pull = assembly.connections[0].forces([&system.bodies[1], &section], &[]);
     let about_axis = Vector3::from(pull.on[1].moment).dot(&Vector3::from(section.motion.axis));
     let allowed = 1e-9 + (about_axis * found.coordinates[0][4]).abs();
     for i in 0..3 {
@@ -218,7 +218,7 @@ fn what_a_connection_holds_is_determinate() {
     let mut statics = StaticAssembly {
         bodies: vec![
             named("body", Place::Loaded(loaded)),
-            named("ground", Place::Held(Pose::identity())),
+            named("ground", Place::Fixed(Pose::identity())),
         ],
         connections: vec![spring()],
         ..StaticAssembly::default()

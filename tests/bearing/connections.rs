@@ -68,7 +68,7 @@ fn ends(connection: &Connection, bodies: &[BodyKinematics; 2]) -> [BodyKinematic
 /// Elongations of its Maxwell elements, some tenths of a millimetre, a `time` after `bodies`.
 fn elongated(connection: &Connection, bodies: &[BodyKinematics; 2], time: f64) -> Vec<f64> {
     let ends = ends(connection, bodies);
-    let rates = connection.pull([&ends[0], &ends[1]], &[]).rates;
+    let rates = connection.forces([&ends[0], &ends[1]], &[]).rates;
     let elements = connection.maxwell().iter().enumerate();
     let of = |(k, element): (usize, &MaxwellElement)| {
         let relaxation_time = element.relaxation_time;
@@ -94,7 +94,7 @@ fn pull_at(
     elongated: &[f64],
 ) -> ([[Vector3<f64>; 2]; 2], f64, f64) {
     let ends = ends(connection, bodies);
-    let pull = connection.pull([&ends[0], &ends[1]], elongated);
+    let pull = connection.forces([&ends[0], &ends[1]], elongated);
     let on = [0, 1].map(|end| {
         let arm = Vector3::from(ends[end].motion.position)
             - Vector3::from(bodies[connection.ends[end].body].motion.position);

@@ -41,7 +41,7 @@ fn on_rubber(elements: &[(f64, f64)], load: Profile) -> Assembly {
         unbalance: 0.0,
     };
     // The bearing's own races stand still, its balls float in their clearance.
-    assembly.bodies[0].hold();
+    assembly.bodies[0].fix();
     assembly.bodies.push(body("block", Mobility::Driven(Box::new(race))));
     assembly.bodies.push(body("ground", Mobility::Fixed));
     let z = |stiffness: f64| [0.0, 0.0, stiffness, 0.0, 0.0, 0.0];

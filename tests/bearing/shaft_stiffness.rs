@@ -32,7 +32,7 @@ fn pair(
         room: geometry.ball_radius,
     };
     let held =
-        |x: f64| Place::Held(Pose { position: Vector3::new(x, 0.0, 0.0), ..Pose::identity() });
+        |x: f64| Place::Fixed(Pose { position: Vector3::new(x, 0.0, 0.0), ..Pose::identity() });
     let named = |name: &str, place| StaticBody { name: name.into(), place };
     let at = [-half, half];
     let bearings = [0, 1].map(|side| StaticBearing {

@@ -296,7 +296,7 @@ fn a_tilted_race_that_nothing_pushes_along_is_free_as_it_is_held() {
     let folder = tempfile::tempdir().unwrap();
     let asymmetric = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data/asymmetric/housing_quasi_static.toml");
-    let rows = ["free", "held"].map(|axial| {
+    let rows = ["free", "fixed"].map(|axial| {
         let content =
             changed(&read(&asymmetric), "axial = \"free\"", &format!("axial = \"{axial}\""));
         let out = folder.path().join(axial);

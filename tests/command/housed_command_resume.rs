@@ -43,7 +43,7 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
     succeed(into_folder("run", &scene, &extended, &["--resume"]));
     assert_same_results(&longer, &extended);
     // Of another scene it is refused.
-    let other = place.scene("other.toml", &blow("3 ms", "window_phase = 0.2"));
+    let other = place.scene("other.toml", &blow("3 ms", "coupling_phase = 0.2"));
     let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
     assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));
 }

@@ -55,7 +55,7 @@ fn it_moves_as_in_explicit_steps() {
     let summary = json(shapes.join("summary.json"));
     assert_eq!(summary["housing_method"], "reduced");
     let reduced = &summary["reduced_housing"];
-    assert!(reduced["natural_shapes"].as_u64().unwrap() > 0, "{reduced}");
+    assert!(reduced["natural_modes"].as_u64().unwrap() > 0, "{reduced}");
     assert!(reduced["compliance_left_out"]["value"].as_f64().unwrap() <= 1e-4, "{reduced}");
     assert_eq!(reduced["masses"], "lumped");
     assert!(summary["seat"]["interference"]["value"].as_f64().unwrap() > 0.0);
@@ -241,7 +241,7 @@ fn a_press_beyond_what_shapes_are_made_for_is_told() {
     assert!((told / hardest - 1.0).abs() <= 1e-3, "{warnings} {hardest}");
     // Made for it, and for four fifths of it.
     for press in [format!("{hardest}"), format!("{:.1}", 0.81 * hardest)] {
-        let (said, warnings, _) = squeezed(&format!("press = \"{press} N\""));
+        let (said, warnings, _) = squeezed(&format!("bore_load = \"{press} N\""));
         assert!(!said.contains(beyond) && !warnings.contains(beyond), "{said} {warnings}");
     }
 }
@@ -280,11 +280,11 @@ fn what_a_reduced_housing_cannot_have_is_refused() {
         blow("explicit", "1 ms", "").replace("fit_ramp", "modes_to = \"9 kHz\"\nfit_ramp");
     refused(&explicit, &["housing.modes_to", "only `reduced`"]);
     refused(
-        &explicit.replace("modes_to = \"9 kHz\"", "press = \"9 kN\""),
-        &["housing.press", "only `reduced`"],
+        &explicit.replace("modes_to = \"9 kHz\"", "bore_load = \"9 kN\""),
+        &["housing.bore_load", "only `reduced`"],
     );
-    let stepped = blow("reduced", "1 ms", "").replace("fit_ramp", "window_phase = 0.2\nfit_ramp");
-    refused(&stepped, &["housing.window_phase"]);
+    let stepped = blow("reduced", "1 ms", "").replace("fit_ramp", "coupling_phase = 0.2\nfit_ramp");
+    refused(&stepped, &["housing.coupling_phase"]);
     let moved = blow("reduced", "1 ms", "")
         .replace("x = true", "x = { half_sine = \"1 um\", start = \"0 s\", duration = \"1 ms\" }");
     refused(&moved, &["solid.fixed", "`reduced` need supports at zero"]);

@@ -39,7 +39,7 @@ fn whirl_is_damped_by_what_damps_a_housing() {
     }
     assert!(seen.len() == 8 && seen[0] > 0.9 && seen[1] < 0.1, "{seen:?}");
     let text = said(&output);
-    assert!(text.contains("left_housing_shape_1"), "{text}");
+    assert!(text.contains("left_housing_mode_1"), "{text}");
     assert!(text.contains("mostly along the axis or of a housing"), "{text}");
 }
 

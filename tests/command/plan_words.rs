@@ -72,7 +72,7 @@ fn steps_that_windows_cut_are_told() {
 fn an_equilibrium_is_found_with_any_number_of_shapes() {
     let found = |below: &str| {
         let words = "damping = \"20 1/s\"";
-        let with = format!("{words}\nbelow = \"{below}\"");
+        let with = format!("{words}\nmodes_to = \"{below}\"");
         let said = said_of(&["statics", "--dry"], "stepped_rotor.toml", &[(words, &with)]);
         let last = said.lines().last().unwrap().to_string();
         let iterations: usize = last.split(' ').next().unwrap().parse().unwrap();

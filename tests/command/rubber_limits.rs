@@ -187,7 +187,7 @@ fn a_run_of_rubber_that_fails_keeps_the_last_row() {
     let text = format!(
         "[solid.mesh]\ngenerate = \"bar\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\nheight = \"10 mm\"\norder = 2\n\
          cells = {{ along = 2, across = 1, up = 1 }}\n[solid.material]\nlaw = \"elastomer\"\ntable = \"3.1\"\n\
-         chain_pull = \"inverse-langevin\"\n{}{}{}",
+         chain_force = \"inverse-langevin\"\n{}{}{}",
         held("x_low", "true"),
         held("x_high", "{ ramp = [\"0 mm\", \"-60 mm\"], duration = \"0.1 s\" }"),
         numerics("0.2 s").replace(RUBBER, "")

@@ -133,7 +133,7 @@ fn modes_say_which_of_them_are_beyond_the_natural_shapes() {
     let place = Place::new();
     let note_of = |scene: &str, limit: &str| {
         let out = place.path("out");
-        let set = format!("body.rotor.beam.below={limit}");
+        let set = format!("body.rotor.beam.modes_to={limit}");
         let output = bearing(&["modes", scene, "--out", out.to_str().unwrap(), "--set", &set]);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         let said = said(&output);

@@ -217,7 +217,7 @@ fn a_bushing_through_its_wall_is_refused() {
 fn of_modes() {
     let rotor = |below: &str| {
         let damping = "damping = \"20 1/s\"";
-        with("stepped_rotor.toml", damping, &format!("{damping}\nbelow = \"{below}\""))
+        with("stepped_rotor.toml", damping, &format!("{damping}\nmodes_to = \"{below}\""))
     };
     let rigid = read(Path::new(&shipped("shaft_back_to_back.toml")));
     assert_raised("W16", "modes", &rotor("500 Hz"), &rigid);

@@ -3,7 +3,7 @@
 use bearing_dynamics::assembly::loads::Drive;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::members::connection::Law;
-use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::coupling::CoupledMotion;
 use bearing_dynamics::motion::simulation::RunOptions;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{
@@ -149,7 +149,7 @@ fn in_implicit_steps(bushing: &BushingElements) -> BushingElements {
     same
 }
 
-/// The same elements with the same masses: nothing but the steps differs. Implicit steps as long as the windows (1/100 of
+/// The same elements with the same masses: nothing but the steps differs. Implicit steps as long as the coupling steps (1/100 of
 /// the swing's period), explicit ones a fifteenth of that.
 #[test]
 fn explicit_and_implicit_steps_of_the_same_elements_agree() {
@@ -203,22 +203,24 @@ fn the_ledger_of_bearing_and_rubber_closes() {
     }
 }
 
-/// Each bushing says how long windows may be.
+/// Each bushing says how long coupling steps may be.
 #[test]
 fn windows_follow_the_phase_of_the_bushing() {
-    let window = |phase: &str| {
+    let coupling_step = |phase: &str| {
         let own = format!("length = \"20 mm\"\nwindow_phase = {phase}\ntable");
         let made =
             Made::of(&changed("explicit", COARSE, ("length = \"20 mm\"\ntable", &own)), 2e-4);
         let Parts::Housed(parts) = made.parts() else { panic!("no bushing") };
         let HousedParts { assembly, bushings, options, .. } = *parts;
         let (solids, seats) = (Vec::new(), Vec::new());
-        Exchange::with_bushings(assembly, solids, seats, bushings, &options).unwrap().window
+        CoupledMotion::with_bushings(assembly, solids, seats, bushings, &options)
+            .unwrap()
+            .coupling_step
     };
-    assert!((window("0.3") / window("0.1") - 3.0).abs() <= 1e-9);
+    assert!((coupling_step("0.3") / coupling_step("0.1") - 3.0).abs() <= 1e-9);
 }
 
-/// Windows are for rubber that nothing has relaxed in: by the springs that it is like, with all of their Maxwell elements.
+/// CouplingSteps are for rubber that nothing has relaxed in: by the springs that it is like, with all of their Maxwell elements.
 #[test]
 fn windows_are_short_enough_for_rubber_that_has_not_relaxed() {
     let own = "length = \"20 mm\"\nwindow_phase = 0.1\ntable";
@@ -237,8 +239,12 @@ fn windows_are_short_enough_for_rubber_that_has_not_relaxed() {
         .map(|inertia| f64::max(largest(0..3) / inertia.mass, largest(3..6) / inertia.transverse));
     let expected = 0.1 / rates.fold(0.0, f64::max).sqrt();
     let (solids, seats) = (Vec::new(), Vec::new());
-    let found = Exchange::with_bushings(assembly, solids, seats, bushings, &options).unwrap();
-    assert!((found.window / expected - 1.0).abs() <= 1e-9, "{} {expected}", found.window);
+    let found = CoupledMotion::with_bushings(assembly, solids, seats, bushings, &options).unwrap();
+    assert!(
+        (found.coupling_step / expected - 1.0).abs() <= 1e-9,
+        "{} {expected}",
+        found.coupling_step
+    );
 }
 
 /// A third of the nodes of a sleeve pull at their body twice: at small strain too the ledger ends such a run.

@@ -18,7 +18,7 @@ use bearing_dynamics::ch4_rotor::bore_friction::{BoreFriction, COEFFICIENT, STRE
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::motion::bore_friction::{Pressed, SeatFriction};
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
@@ -81,11 +81,11 @@ fn in_bore(
     assembly: Assembly,
     (model, nodes): (SolidModel, Vec<ContactNode>),
     friction: Option<BoreFriction>,
-    options: &ExchangeOptions,
-) -> Exchange<'static> {
+    options: &CouplingOptions,
+) -> CoupledMotion<'static> {
     let seat = rough(nodes, friction);
     let solids = vec![SolidPart::undeformed(None, model)];
-    Exchange::new(assembly, solids, vec![seat], options).unwrap()
+    CoupledMotion::new(assembly, solids, vec![seat], options).unwrap()
 }
 
 const STILL: Drive = Drive::Motion(Profile::ZERO);
@@ -115,7 +115,7 @@ fn a_race_moved_along_its_bore_sticks_and_slips_by_the_closed_form() {
             let snapshot = housed.snapshot().unwrap();
             let friction = &snapshot.solids[0].seats[0].friction;
             // Where displacements are.
-            let at = reach * f64::min((t + 0.5 * housed.window) / leg, 1.0);
+            let at = reach * f64::min((t + 0.5 * housed.coupling_step) / leg, 1.0);
             if t < 0.95 * leg {
                 let should = -limit * f64::min(at / slips_at, 1.0);
                 let error = (friction.force[0] - should).abs() / limit;
@@ -129,7 +129,7 @@ fn a_race_moved_along_its_bore_sticks_and_slips_by_the_closed_form() {
         }
         println!("stick {stick:.1e}, slip {slip:.1e} of μN");
         assert!(stick <= 1e-6 && slip <= 1e-6, "{stick:e} {slip:e}");
-        // μN (A − s) at first, then 4 μN (A − s) in every cycle, and where a leg ends within a window a part of its way.
+        // μN (A − s) at first, then 4 μN (A − s) in every cycle, and where a leg ends within a coupling step a part of its way.
         let unit = limit * (reach - slips_at);
         let errors = [heats[0] / unit - 1.0, (heats[2] - heats[0]) / (4.0 * unit) - 1.0];
         println!("heat {errors:?}");
@@ -150,7 +150,7 @@ fn a_race_at_rest_does_not_creep() {
     while housed.time() < 5e-4 {
         housed.advance().unwrap();
     }
-    let springs = |housed: &Exchange| only(housed).friction.as_ref().unwrap().springs.clone();
+    let springs = |housed: &CoupledMotion| only(housed).friction.as_ref().unwrap().springs.clone();
     let before = springs(&housed);
     let (mut first, mut last) = ([0.0; 2], [0.0; 2]);
     for step in 0..100_000 {
@@ -243,7 +243,7 @@ fn a_race_pushed_harder_slides() {
             housed.advance().unwrap();
         }
         at.push((housed.time(), housed.simulation.body(0).velocity[0]));
-        assert!(housed.time() - end < 2.0 * housed.window);
+        assert!(housed.time() - end < 2.0 * housed.coupling_step);
     }
     let gained = (at[1].1 - at[0].1) / (at[1].0 - at[0].0);
     let should = (push - limit) / mass;
@@ -282,7 +282,7 @@ fn a_spring_that_is_let_go_takes_nothing_along() {
     assert_eq!((anew.stored, anew.force), (0.0, [0.0; 3]));
 }
 
-/// As stiff as springs become, steps and windows next to their limits: a race that swings and turns in its bore keeps
+/// As stiff as springs become, steps and coupling steps next to their limits: a race that swings and turns in its bore keeps
 /// its energy.
 #[test]
 fn the_shortest_springs_leave_the_steps_stable() {
@@ -297,7 +297,8 @@ fn the_shortest_springs_leave_the_steps_stable() {
             housed.simulation.state[layout + entry] = value;
         }
         housed.divide(1.0).unwrap();
-        let kinetic = |housed: &mut Exchange| housed.snapshot().unwrap().simulation.energy.kinetic;
+        let kinetic =
+            |housed: &mut CoupledMotion| housed.snapshot().unwrap().simulation.energy.kinetic;
         let first = kinetic(&mut housed);
         // In either half of the run.
         let mut most = [0.0f64; 2];
@@ -339,15 +340,15 @@ fn every_spring_is_counted() {
 }
 
 /// A race so light about its diameters that its tilt decides: springs of the friction hold it with what they are worth across the
-/// bore beside what the contact holds along it, and windows are as much shorter. One whose speed is given is not held about its axis.
+/// bore beside what the contact holds along it, and coupling steps are as much shorter. One whose speed is given is not held about its axis.
 #[test]
 fn windows_know_what_friction_holds_tilts_with() {
     let (_, nodes) = rigid();
-    let window = |friction| {
+    let coupling_step = |friction| {
         let mut turning = alone([UNLOADED; 5], Rotation::Speed(Profile::ZERO));
         turning.bodies[0].driven_mut().unwrap().inertia.transverse = 1e-6;
-        // Steps of the solid are far shorter than windows: these are of so many.
-        in_bore(turning, rigid(), friction, &rated(0.02, 1.0, 1e-6)).window
+        // Steps of the solid are far shorter than coupling_steps: these are of so many.
+        in_bore(turning, rigid(), friction, &rated(0.02, 1.0, 1e-6)).coupling_step
     };
     let sum = |axis: usize| -> f64 {
         nodes.iter().map(|node| STIFFNESS * node.area * node.place[axis] * node.place[axis]).sum()
@@ -355,7 +356,7 @@ fn windows_know_what_friction_holds_tilts_with() {
     let (along, across) = (sum(0), f64::max(sum(1), sum(2)));
     for (friction, stiffness) in [(None, along), (Some(LAW), along + across)] {
         let longest = (1e-6 / stiffness).sqrt();
-        let found = window(friction);
+        let found = coupling_step(friction);
         // Of whole steps.
         assert!(found <= longest && found >= 0.9 * longest, "{friction:?}: {found:e} {longest:e}");
     }

@@ -21,7 +21,7 @@ fn through(
     let mut spring = Spring::default();
     let pull = |([along, round], load): ([f64; 2], f64)| {
         let place = add_scaled(add_scaled(HERE, along, ALONG), round, ROUND);
-        let pull = law.pull(&spring, place, NORMAL, load, STIFFNESS);
+        let pull = law.update(&spring, place, NORMAL, load, STIFFNESS);
         spring = pull.spring;
         pull
     };
@@ -158,8 +158,8 @@ fn an_anchor_stays_where_it_is_while_nothing_slips() {
 /// A way along the normal is none of the spring's.
 #[test]
 fn pressing_deeper_stretches_nothing() {
-    let first = LAW.pull(&Spring::default(), HERE, NORMAL, 10.0, STIFFNESS);
+    let first = LAW.update(&Spring::default(), HERE, NORMAL, 10.0, STIFFNESS);
     let deeper = add_scaled(HERE, -3e-6, NORMAL);
-    let second = LAW.pull(&first.spring, deeper, NORMAL, 700.0, STIFFNESS);
+    let second = LAW.update(&first.spring, deeper, NORMAL, 700.0, STIFFNESS);
     assert!(norm(second.spring.stretch) <= 1e-17, "{:?}", second.spring);
 }

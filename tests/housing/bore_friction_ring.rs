@@ -9,20 +9,20 @@ use bearing_dynamics::ch2_housing::bore_contact::{Cylinder, Frame, Penalty};
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::motion::bore_friction::{Pressed, SeatFriction};
-use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::coupling::CoupledMotion;
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use housing_exchange::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
-fn snapshot_parts(housed: &mut Exchange) -> [f64; 3] {
+fn snapshot_parts(housed: &mut CoupledMotion) -> [f64; 3] {
     let snapshot = housed.snapshot().unwrap();
     let friction = snapshot.solids[0].seats[0].friction;
     [friction.stored, friction.heat, friction.load_work]
 }
 
 /// Bits of everything that moves.
-fn bits_of(housed: &Exchange) -> Vec<u64> {
+fn bits_of(housed: &CoupledMotion) -> Vec<u64> {
     let solid = &housed.solids[0].solid;
     let nodes = solid.displacement.iter().chain(solid.rates()).flatten();
     housed.simulation.state.iter().chain(nodes).map(|value| value.to_bits()).collect()
@@ -67,7 +67,7 @@ fn what_friction_gives_the_ring_it_takes_from_the_race() {
     println!("momenta {:e} {:e}, {slid} nodes slid, residual {worst:.1e}", largest[0], largest[1]);
     assert!(handed > 0.1 * before.0.norm() && slid > 0, "{handed:e} {slid}");
     assert!(largest.iter().all(|error| *error <= 1e-9), "{largest:?}");
-    // Thrown about between race and ring: with windows four times as long, 7e-3, and 1.4e-2 without friction.
+    // Thrown about between race and ring: with coupling steps four times as long, 7e-3, and 1.4e-2 without friction.
     assert!(worst <= 1e-3, "{worst:e}");
 }
 

@@ -8,7 +8,7 @@ use crate::dynamics;
 use bearing_dynamics::assembly::lists::OUTER;
 use bearing_dynamics::assembly::state::VELOCITY;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::motion::coupling::ExchangeError;
+use bearing_dynamics::motion::coupling::CouplingError;
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use dynamics::*;
@@ -154,7 +154,7 @@ fn a_race_that_leaves_its_bore_ends_the_run() {
         housed.simulation.state[layout.ball(VELOCITY) + i] = 20.0;
     }
     let error = (0..20_000).find_map(|_| housed.advance().err()).expect("an error");
-    let ExchangeError::LeftBore { way, distance, allowed, .. } = &error else {
+    let CouplingError::LeftBore { way, distance, allowed, .. } = &error else {
         panic!("{error}");
     };
     assert_eq!((*way, *allowed), ("along the axis", only(&housed).rim));
@@ -178,7 +178,7 @@ fn a_race_that_hangs_in_the_wall_ends_the_run() {
             housed.simulation.state[layout.ball(VELOCITY + axis) + i] = -40.0;
         }
         let error = (0..20_000).find_map(|_| housed.advance().err()).expect("an error");
-        let ExchangeError::LeftBore { way, distance, allowed, .. } = &error else {
+        let CouplingError::LeftBore { way, distance, allowed, .. } = &error else {
             panic!("{error}");
         };
         assert_eq!(*way, "across it");
@@ -204,6 +204,6 @@ fn a_race_that_outruns_the_reach_of_its_seat_ends_the_run() {
         housed.simulation.state[layout.ball(VELOCITY + 2) + i] = -1.0;
     }
     let error = (0..20_000).find_map(|_| housed.advance().err()).expect("an error");
-    let ExchangeError::Outrun { moved, reach, .. } = &error else { panic!("{error}") };
+    let CouplingError::Outrun { moved, reach, .. } = &error else { panic!("{error}") };
     assert!(*reach == short && *moved > short, "{error}");
 }

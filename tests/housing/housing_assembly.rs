@@ -18,7 +18,7 @@ use housing_common::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
 pub fn fit(interference: f64) -> Fit {
-    Fit { radius: BORE + interference, axial: Axial::Held }
+    Fit { radius: BORE + interference, axial: Axial::Fixed }
 }
 
 pub fn search(bore: &CondensedBore) -> HousedSearch<'_> {

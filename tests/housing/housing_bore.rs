@@ -24,7 +24,7 @@ use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
 
 fn fit(interference: f64) -> Fit {
-    Fit { radius: BORE + interference, axial: Axial::Held }
+    Fit { radius: BORE + interference, axial: Axial::Fixed }
 }
 
 fn load(y: f64, z: f64, about_y: f64, about_z: f64) -> RaceLoad {
@@ -65,7 +65,7 @@ fn compliance_is_symmetric_and_positive() {
         let all: Vec<usize> = (0..bore.nodes.len()).collect();
         assert!(bore.compliance.factor(&all, &vec![0.0; all.len()]).is_ok());
         let sizes = bore.sizes;
-        assert_eq!((sizes.kept, sizes.beside, sizes.out_of_reach), (sizes.bore, 0, 0));
+        assert_eq!((sizes.kept, sizes.beside, sizes.outside_range), (sizes.bore, 0, 0));
         let areas: f64 = bore.nodes.iter().map(|node| node.area).sum();
         let bore_area = std::f64::consts::TAU * BORE * WIDTH;
         assert!((areas / bore_area - 1.0).abs() <= 5e-3, "{areas} {bore_area}");
@@ -276,7 +276,7 @@ fn what_a_condensed_housing_cannot_be_is_an_error() {
     let mut moved = model.clone();
     moved.problem.prescribed[0].profile = Profile::Constant(1e-6);
     let error = condense(&moved, &bore_of(&mesh), &reach()).err();
-    assert!(matches!(error, Some(CondenseError::MovedSupport { .. })));
+    assert!(matches!(error, Some(CondenseError::PrescribedSupport { .. })));
     let mut loose = model.problem.clone();
     loose.prescribed.clear();
     let loose = SolidModel::new(loose).unwrap();
@@ -398,8 +398,8 @@ fn nodes_out_of_reach_are_counted_and_not_missed() {
     let whole = condense(&model, &nodes, &all).unwrap();
     let part = condense(&model, &nodes, &near).unwrap();
     let sizes = part.sizes;
-    assert!(sizes.out_of_reach > sizes.bore / 2, "{sizes:?}");
-    assert_eq!(sizes.kept + sizes.out_of_reach, sizes.bore);
+    assert!(sizes.outside_range > sizes.bore / 2, "{sizes:?}");
+    assert_eq!(sizes.kept + sizes.outside_range, sizes.bore);
     for contact in &nodes {
         let [_, y, z] = contact.place;
         let gap = y.hypot(z + clearance) - (BORE - clearance);
@@ -419,7 +419,7 @@ fn nodes_out_of_reach_are_counted_and_not_missed() {
     // A load that takes it farther than that is refused, not answered.
     let lifted =
         BoreSearch::new(&part, Penalty::default()).at_pose(&fit, [0.0, 2.0 * clearance, 0.0, 0.0]);
-    assert!(matches!(lifted, Err(BoreError::BeyondReach { .. })), "{lifted:?}");
+    assert!(matches!(lifted, Err(BoreError::BeyondRange { .. })), "{lifted:?}");
 }
 
 /// In a rigid bore only the penalty springs give way.

@@ -14,7 +14,9 @@ use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty, contact_
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{
+    CoupledMotion, CouplingError, CouplingOptions, SolidPart,
+};
 use bearing_dynamics::motion::race_in_bore::{Seat, SeatState};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
@@ -85,17 +87,17 @@ pub fn seat(nodes: Vec<ContactNode>, reach: f64) -> Seat {
     }
 }
 
-pub fn rated(solid_fraction: f64, seat_phase: f64, step: f64) -> ExchangeOptions {
+pub fn rated(solid_fraction: f64, seat_phase: f64, step: f64) -> CouplingOptions {
     let bearing = RunOptions {
         integrator: Integrator::RungeKutta,
         stepping: Stepping::Fixed(step),
         energy_limit: f64::INFINITY,
         ..RunOptions::default()
     };
-    ExchangeOptions { solid_fraction, seat_phase, bearing }
+    CouplingOptions { solid_fraction, seat_phase, bearing }
 }
 
-pub fn options() -> ExchangeOptions {
+pub fn options() -> CouplingOptions {
     rated(0.8, 0.25, 2e-6)
 }
 
@@ -103,16 +105,21 @@ pub fn joined(
     problem: DynamicProblem,
     model: SolidModel,
     seat: Seat,
-    options: &ExchangeOptions,
-) -> Result<Exchange<'static>, ExchangeError> {
-    Exchange::new(problem, vec![SolidPart::undeformed(None, model)], vec![seat], options)
+    options: &CouplingOptions,
+) -> Result<CoupledMotion<'static>, CouplingError> {
+    CoupledMotion::new(problem, vec![SolidPart::undeformed(None, model)], vec![seat], options)
 }
 
-pub fn only<'h>(housed: &'h Exchange<'_>) -> &'h SeatState {
+pub fn only<'h>(housed: &'h CoupledMotion<'_>) -> &'h SeatState {
     &housed.solids[0].seats[0]
 }
 
-pub fn start(problem: DynamicProblem, held: bool, damping: f64, reach: f64) -> Exchange<'static> {
+pub fn start(
+    problem: DynamicProblem,
+    held: bool,
+    damping: f64,
+    reach: f64,
+) -> CoupledMotion<'static> {
     start_with(problem, held, damping, reach, &options())
 }
 
@@ -121,13 +128,13 @@ fn start_with(
     held: bool,
     damping: f64,
     reach: f64,
-    options: &ExchangeOptions,
-) -> Exchange<'static> {
+    options: &CouplingOptions,
+) -> CoupledMotion<'static> {
     let (model, nodes) = housing(held, damping);
     joined(problem, model, seat(nodes, reach), options).unwrap()
 }
 
-pub fn total_momentum(housed: &mut Exchange) -> Vector3<f64> {
+pub fn total_momentum(housed: &mut CoupledMotion) -> Vector3<f64> {
     let bearing = momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).0;
     // Between kicks the rates of central differences are those of the bearing's time.
     let mut sum = bearing;
@@ -164,7 +171,7 @@ fn what_the_housing_gets_the_race_gets() {
 }
 
 /// Of races, balls and housing about the origin, a point that stands still.
-pub fn total_angular_momentum(housed: &Exchange) -> Vector3<f64> {
+pub fn total_angular_momentum(housed: &CoupledMotion) -> Vector3<f64> {
     let mut sum = momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).1;
     // Places half a step ahead of the rates: along them, which is no lever.
     let model = &housed.solids[0].solid.model;
@@ -188,7 +195,7 @@ fn a_tilting_race_turns_the_housing_as_much_as_it_is_held_back() {
     {
         housed.simulation.state[at + entry] = value;
     }
-    let of_races = |housed: &Exchange| {
+    let of_races = |housed: &CoupledMotion| {
         momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).1
     };
     let (before, races_before) = (total_angular_momentum(&housed), of_races(&housed));
@@ -216,7 +223,7 @@ pub fn blow(problem: DynamicProblem) -> DynamicProblem {
 
 #[test]
 fn the_energy_of_a_blow_balances() {
-    // One step of the housing a window, and five; the bearing's own steps longer and shorter.
+    // One step of the housing a coupling step, and five; the bearing's own steps longer and shorter.
     let rates = [(0.0, 0.8, 0.25, 2e-6), (77.0, 0.1, 0.5, 2e-6), (77.0, 0.8, 0.25, 3e-8)];
     for (damping, solid_fraction, seat_phase, step) in rates {
         let options = rated(solid_fraction, seat_phase, step);
@@ -232,10 +239,10 @@ fn the_energy_of_a_blow_balances() {
             let part = snapshot.residual.abs() / snapshot.turned_over;
             worst = if part <= worst { worst } else { part };
         }
-        let parts = (housed.window / step * (1.0 - 1e-9)).ceil().max(1.0) as u64;
+        let parts = (housed.coupling_step / step * (1.0 - 1e-9)).ceil().max(1.0) as u64;
         assert_eq!(housed.simulation.steps, parts * housed.exchanges);
         println!("damping {damping}: {worst:.1e}");
-        // Measured: 7e-6, 1.6e-5, 1.2e-5, and growing with the square of the window.
+        // Measured: 7e-6, 1.6e-5, 1.2e-5, and growing with the square of the coupling step.
         assert!(worst <= 5e-5, "{worst:e}");
     }
 }
@@ -261,7 +268,7 @@ fn what_is_turned_over_at_the_start_is_the_preload() {
     assert!(snapshot.residual.abs() <= 1e-12 * preload, "{:e}", snapshot.residual);
 }
 
-/// Halve the window, and a quarter of the energy is unaccounted for: both are balanced at one time.
+/// Halve the coupling step, and a quarter of the energy is unaccounted for: both are balanced at one time.
 #[test]
 fn the_balance_is_of_second_order() {
     let worst = |seat_phase: f64| {
@@ -346,7 +353,7 @@ fn a_contact_a_thousand_times_as_stiff_takes_shorter_windows_and_balances() {
     // The load starts at once: the first contacts of the race with its bore.
     let (soft, _) = run(1.0, 5e-5);
     let (hard, worst) = run(1000.0, 5e-5);
-    let shorter = soft.window / hard.window;
+    let shorter = soft.coupling_step / hard.coupling_step;
     assert!((shorter / 1000f64.sqrt() - 1.0).abs() <= 0.01, "{shorter}");
     assert!(
         only(&hard).contact.touching > 0
@@ -380,22 +387,22 @@ fn balls_start_rolling_with_a_race_that_turns_in_its_bore() {
 #[test]
 fn what_cannot_be_run_is_refused_by_name() {
     let (model, nodes) = housing(true, 0.0);
-    let try_with = |problem: DynamicProblem, nodes: &[ContactNode], options: ExchangeOptions| {
+    let try_with = |problem: DynamicProblem, nodes: &[ContactNode], options: CouplingOptions| {
         let seat = seat(nodes.to_vec(), f64::INFINITY);
         joined(problem, model.clone(), seat, &options).err().expect("an error")
     };
     let fixed = bearing(table_4_1(-5e-6), [0.0; 5], 0.0);
     let race = "the outer race".to_string();
-    assert_eq!(try_with(fixed, &nodes, options()), ExchangeError::FixedRace { race: race.clone() });
+    assert_eq!(try_with(fixed, &nodes, options()), CouplingError::FixedRace { race: race.clone() });
     let mut sprung = mounted([0.0; 5]);
     sprung.outer.as_mut().unwrap().foundation_damping[2] = 1.0;
-    assert_eq!(try_with(sprung, &nodes, options()), ExchangeError::Foundation { race });
+    assert_eq!(try_with(sprung, &nodes, options()), CouplingError::Foundation { race });
     assert_eq!(
         try_with(mounted([0.0; 5]), &[], options()),
-        ExchangeError::NoSeat { seat: String::new() }
+        CouplingError::NoSeat { seat: String::new() }
     );
     for phase in [0.0, 2.0, f64::NAN] {
         let refused = try_with(mounted([0.0; 5]), &nodes, rated(0.8, phase, 2e-6));
-        assert!(matches!(refused, ExchangeError::Option { .. }), "{refused}");
+        assert!(matches!(refused, CouplingError::Option { .. }), "{refused}");
     }
 }

@@ -31,7 +31,7 @@ fn differ_by_displacement_over_radius() {
             (1e-5, 1e-7, -3e-7),
         ] {
             let penalty = Penalty::default();
-            let fit = Fit { radius: BORE + interference, axial: Axial::Held };
+            let fit = Fit { radius: BORE + interference, axial: Axial::Fixed };
             let linear = BoreSearch::new(&bore, penalty).at_pose(&fit, [y, z, 0.0, 0.0]).unwrap();
             let first = BORE + f64::min(interference, 0.0);
             let radius = Profile::Ramp { from: first, to: fit.radius, start: 0.0, duration: 1.0 };

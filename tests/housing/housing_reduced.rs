@@ -39,7 +39,7 @@ use std::f64::consts::TAU;
 const PENALTY: fn() -> Penalty = Penalty::default;
 
 pub(crate) fn fit(interference: f64) -> Fit {
-    Fit { radius: BORE + interference, axial: Axial::Held }
+    Fit { radius: BORE + interference, axial: Axial::Fixed }
 }
 
 /// The ring of housing D on a coarse mesh, condensed, and reduced.

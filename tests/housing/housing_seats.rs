@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, SVector, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
 fn fit(interference: f64) -> Fit {
-    Fit { radius: BORE + interference, axial: Axial::Held }
+    Fit { radius: BORE + interference, axial: Axial::Fixed }
 }
 
 /// Fit, pose (m, rad) and how many of the nodes touch: none, some, all, some under tilts.
@@ -230,7 +230,7 @@ fn a_race_held_where_its_bore_holds_it_changes_nothing() {
     let mut one = both.clone();
     let [x, y, z, xi, lambda] = found.coordinates[2].into();
     let own = Pose { position: Vector3::new(x, y, z), orientation: quaternion(0.0, xi, lambda) };
-    one.bodies[2].place = Place::Held(own.seen_from_parent_of(&both.seats[1].nominal));
+    one.bodies[2].place = Place::Fixed(own.seen_from_parent_of(&both.seats[1].nominal));
     one.seats.truncate(1);
     let alone = solve(&one);
     let size = found.coordinates[1].fixed_rows::<3>(0).norm();

@@ -8,7 +8,7 @@ use bearing_dynamics::assembly::channels::ChannelGroup;
 use bearing_dynamics::assembly::lists::Mobility;
 use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeError};
+use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingError};
 use bearing_dynamics::output::session::{HousedParts, Motion, Parts, RunRequest, Session, Status};
 use bearing_dynamics::output::state::{self, StateRecord, Stopped};
 
@@ -104,15 +104,15 @@ fn what_ends_a_run_has_a_name() {
     let (solid, mut seat) = fitted(&right(true), 0, Mount::at_centre(2));
     seat.nodes.clear();
     let assembly = || on_two(shaft(), ContactDamping::None);
-    let refused = Exchange::new(assembly(), vec![solid], vec![seat], &options(0.8, 0.25));
+    let refused = CoupledMotion::new(assembly(), vec![solid], vec![seat], &options(0.8, 0.25));
     let Err(error) = refused else { panic!("a seat without nodes") };
     assert!(error.to_string().starts_with("no node of the housing right carries"), "{error}");
     let mut fixed = assembly();
     fixed.bodies[2].mobility = Mobility::Fixed;
     let (solid, seat) = fitted(&right(true), 0, Mount::at_centre(2));
-    let refused = Exchange::new(fixed, vec![solid], vec![seat], &options(0.8, 0.25));
+    let refused = CoupledMotion::new(fixed, vec![solid], vec![seat], &options(0.8, 0.25));
     let Err(error) = refused else { panic!("a race that is fixed") };
-    assert_eq!(error, ExchangeError::FixedRace { race: "the right outer race".into() });
+    assert_eq!(error, CouplingError::FixedRace { race: "the right outer race".into() });
     let mut housed = housed(assembly(), [left(true), right(true)], &options(0.8, 0.25));
     let at = housed.simulation.system.places.body(2);
     housed.simulation.state[at] += 6e-3;

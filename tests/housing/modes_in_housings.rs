@@ -9,7 +9,7 @@ use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solids::condensation::{CondensedBore, condense};
 use bearing_dynamics::solids::fixed_interface_modes::{
-    Natural, natural_shapes_of, swinging_housing,
+    Natural, natural_modes_of, vibrating_housing,
 };
 use bearing_dynamics::solids::model::SolidModel;
 use bearing_dynamics::solids::tangent::{PRESCRIBED, pattern, stiffness};
@@ -117,8 +117,8 @@ fn a_bearing_swings_with_all_of_its_housing() {
         let mut last = f64::INFINITY;
         for count in [6, 12, 24, 48] {
             let (natural, first_left_out) =
-                natural_shapes_of(&model, &bore, Natural::Lowest(count)).unwrap();
-            let swinging = swinging_housing(search.bore(), OUTER, &natural, 0.0);
+                natural_modes_of(&model, &bore, Natural::Lowest(count)).unwrap();
+            let swinging = vibrating_housing(search.bore(), OUTER, &natural, 0.0);
             assert_eq!(swinging.held.len(), count);
             let limit = (TAU * first_left_out).powi(2);
             let found = modes(&state.stiffness, &bodies, &[swinging]);
@@ -151,7 +151,7 @@ fn natural_shapes_go_up_to_the_frequency_that_is_asked_for() {
     let mesh = mesh_of(&RING, &COARSE, Order::Linear);
     let model = model_of(&mesh, 0.01 * YOUNG);
     let bore = condense(&model, &bore_of(&mesh), &reach()).unwrap();
-    let of = |natural| natural_shapes_of(&model, &bore, natural).unwrap();
+    let of = |natural| natural_modes_of(&model, &bore, natural).unwrap();
     let (lowest, first_left_out) = of(Natural::Lowest(12));
     let (up_to, beyond) = of(Natural::UpTo(first_left_out * (1.0 - 1e-6)));
     assert_eq!((lowest.len(), up_to.len()), (12, 12));

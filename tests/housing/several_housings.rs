@@ -1,4 +1,4 @@
-//! A shaft on two bearings in two housings, all in explicit steps: momentum and energy over the windows, mirrored
+//! A shaft on two bearings in two housings, all in explicit steps: momentum and energy over the coupling steps, mirrored
 //! halves, the order of lists, where it settles, and what a housing comes to that is as good as rigid.
 
 use crate::common;
@@ -17,7 +17,7 @@ use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::mesh::tet_mesh::Elements;
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::{Seat, SeatState};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
@@ -152,27 +152,27 @@ pub fn on_two(shaft: DrivenBody, damping: ContactDamping) -> Assembly {
     }
 }
 
-pub fn options(solid_fraction: f64, seat_phase: f64) -> ExchangeOptions {
+pub fn options(solid_fraction: f64, seat_phase: f64) -> CouplingOptions {
     let bearing = RunOptions {
         integrator: Integrator::RungeKutta,
         stepping: Stepping::Fixed(2e-6),
         energy_limit: f64::INFINITY,
         ..RunOptions::default()
     };
-    ExchangeOptions { solid_fraction, seat_phase, bearing }
+    CouplingOptions { solid_fraction, seat_phase, bearing }
 }
 
 /// The two outer races in these housings.
 pub fn housed(
     assembly: Assembly,
     housings: [Housing; 2],
-    options: &ExchangeOptions,
-) -> Exchange<'static> {
+    options: &CouplingOptions,
+) -> CoupledMotion<'static> {
     let (solids, seats) = [0, 1]
         .map(|index| fitted(&housings[index], index, Mount::at_centre(1 + index)))
         .into_iter()
         .unzip();
-    Exchange::new(assembly, solids, seats, options).unwrap()
+    CoupledMotion::new(assembly, solids, seats, options).unwrap()
 }
 
 /// A blow of 2 kN against the shaft, 1 ms long, `off` its middle (m).
@@ -186,7 +186,7 @@ pub fn struck(off: f64) -> DrivenBody {
 }
 
 /// Everything in storey 1 but what stands still from then on has this velocity more, m/s.
-fn throw(housed: &mut Exchange, velocity: [f64; 3]) {
+fn throw(housed: &mut CoupledMotion, velocity: [f64; 3]) {
     let bodies = housed.simulation.system.assembly.bodies.len();
     for (axis, speed) in velocity.into_iter().enumerate() {
         for body in 0..bodies {
@@ -204,7 +204,7 @@ fn throw(housed: &mut Exchange, velocity: [f64; 3]) {
 
 /// Momentum and angular momentum about the origin. Places of nodes are half a step ahead of the rates: along
 /// them, which is no lever.
-fn total(housed: &Exchange) -> [Vector3<f64>; 2] {
+fn total(housed: &CoupledMotion) -> [Vector3<f64>; 2] {
     let simulation = &housed.simulation;
     let (mut momentum, mut angular) =
         momenta(simulation.system.assembly.clone(), &simulation.state);
@@ -238,7 +238,7 @@ fn shaft_housings_and_supports_keep_the_momentum() {
     for _ in 0..3000 {
         housed.advance().unwrap();
         for part in &housed.solids {
-            // Whatever a window has in it, the forces of its one step are those that were last evaluated.
+            // Whatever a coupling step has in it, the forces of its one step are those that were last evaluated.
             assert_eq!(part.steps, 1);
             for held in &part.solid.model.problem.prescribed {
                 let force = part.solid.forces()[held.node as usize][held.axis];
@@ -258,7 +258,7 @@ fn shaft_housings_and_supports_keep_the_momentum() {
 }
 
 /// Races at the ends of a shaft, one put on the other way round, in two free rings.
-fn in_two_bores(options: &ExchangeOptions) -> Exchange<'static> {
+fn in_two_bores(options: &CouplingOptions) -> CoupledMotion<'static> {
     let assembly = Assembly {
         bodies: vec![body("the shaft", Mobility::Driven(free_race().into()), 0.0)],
         ..Assembly::default()
@@ -270,14 +270,14 @@ fn in_two_bores(options: &ExchangeOptions) -> Exchange<'static> {
     ];
     let (solids, seats) =
         [0, 1].map(|index| fitted(&housings[index], index, mounts[index])).into_iter().unzip();
-    let mut housed = Exchange::new(assembly, solids, seats, options).unwrap();
+    let mut housed = CoupledMotion::new(assembly, solids, seats, options).unwrap();
     throw(&mut housed, [0.0, 0.01, -0.006]);
     let at = housed.simulation.system.places.body(SHAFT);
     (housed.simulation.state[at + SPIN + 1], housed.simulation.state[at + SPIN + 2]) = (0.3, 0.2);
     housed
 }
 
-/// Nothing is held; windows have several steps, of the two housings not the same number. The shaft turns the
+/// Nothing is held; coupling steps have several steps, of the two housings not the same number. The shaft turns the
 /// rings as much as they hold it back.
 #[test]
 fn a_shaft_in_two_bores_keeps_both_momenta() {
@@ -293,11 +293,13 @@ fn a_shaft_in_two_bores_keeps_both_momenta() {
     let [shift, tilt] = stiffness.fold([0.0; 2], |sum, k| [sum[0] + k[0], sum[1] + k[1]]);
     let inertia = housed.simulation.system.assembly.bodies[SHAFT].inertia().unwrap();
     let longest = 0.4 / (shift / inertia.mass).max(tilt / inertia.transverse).sqrt();
-    assert!(housed.window <= longest * (1.0 + 1e-12) && housed.window > 0.5 * longest);
+    assert!(
+        housed.coupling_step <= longest * (1.0 + 1e-12) && housed.coupling_step > 0.5 * longest
+    );
     let steps = [housed.solids[0].steps, housed.solids[1].steps];
     assert!(steps[0] > 1 && steps[1] > steps[0], "{steps:?}");
     let before = total(&housed);
-    let of_shaft = |housed: &Exchange| {
+    let of_shaft = |housed: &CoupledMotion| {
         momenta(housed.simulation.system.assembly.clone(), &housed.simulation.state).1
     };
     let first = of_shaft(&housed);
@@ -317,7 +319,7 @@ fn a_shaft_in_two_bores_keeps_both_momenta() {
     assert!(largest[1] <= 1e-9, "{largest:?}");
 }
 
-/// Halve the window, and a quarter of the energy is unaccounted for: work is booked over the arms it acts on.
+/// Halve the coupling step, and a quarter of the energy is unaccounted for: work is booked over the arms it acts on.
 #[test]
 fn the_balance_over_arms_is_of_second_order() {
     let worst_of = |phase: f64| {
@@ -354,7 +356,7 @@ fn the_energy_of_a_blow_balances_beside_dashpots() {
     let mut alone = on_two(braked, ContactDamping::None);
     alone.bodies[2].mobility = Mobility::Fixed;
     let (solid, seat) = fitted(&damped(left(true)), 0, Mount::at_centre(1));
-    let one = Exchange::new(alone, vec![solid], vec![seat], &options(0.8, 0.08)).unwrap();
+    let one = CoupledMotion::new(alone, vec![solid], vec![seat], &options(0.8, 0.08)).unwrap();
     for mut housed in [both, one] {
         let mut largest = 0.0f64;
         while housed.time() < 1.5e-3 {
@@ -418,7 +420,7 @@ fn the_order_of_the_housings_changes_nothing() {
         }
         seats.reverse();
         let assembly = on_two(struck(15e-3), ContactDamping::None);
-        let mut housed = Exchange::new(assembly, solids, seats, &options(0.02, 0.4)).unwrap();
+        let mut housed = CoupledMotion::new(assembly, solids, seats, &options(0.02, 0.4)).unwrap();
         while housed.time() < 1e-3 {
             housed.advance().unwrap();
         }
@@ -461,9 +463,9 @@ fn a_stiff_housing_is_a_fixed_race() {
             parts.push(fitted(&stiff, 1, Mount::at_centre(2)));
         }
         let (solids, seats) = parts.into_iter().unzip();
-        Exchange::new(assembly, solids, seats, &options(0.8, 0.5)).unwrap()
+        CoupledMotion::new(assembly, solids, seats, &options(0.8, 0.5)).unwrap()
     };
-    let run = |mut housed: Exchange| {
+    let run = |mut housed: CoupledMotion| {
         let mut path = Vec::new();
         let mut gives_way = 0.0f64;
         while housed.time() < 1.2e-3 {
@@ -476,8 +478,8 @@ fn a_stiff_housing_is_a_fixed_race() {
         (path, gives_way)
     };
     let (mut rigid, stiff) = (start(true), start(false));
-    // In windows of the same length, so that what these do to the other side is the same.
-    rigid.divide(stiff.window).unwrap();
+    // In coupling steps of the same length, so that what these do to the other side is the same.
+    rigid.divide(stiff.coupling_step).unwrap();
     let ((rigid, none), (stiff, gives_way)) = (run(rigid), run(stiff));
     assert_eq!(none, 0.0);
     let size = rigid.iter().fold(0.0f64, |most, z| most.max(z.abs()));
@@ -541,7 +543,7 @@ fn they_settle_as_levers_and_solids_have_it() {
     }
 }
 
-/// Two bearings that know nothing of each other, in one window: each moves as it does by itself, to the bit.
+/// Two bearings that know nothing of each other, in one coupling_step: each moves as it does by itself, to the bit.
 #[test]
 fn what_is_not_joined_does_not_feel_the_other() {
     let problem = |load: f64| {
@@ -556,7 +558,7 @@ fn what_is_not_joined_does_not_feel_the_other() {
     let centred = Housing { at: 0.0, ..left(true) };
     let alone = |load: f64| {
         let (solid, seat) = fitted(&centred, 0, Mount::at_centre(1));
-        Exchange::new(problem(load), vec![solid], vec![seat], &options(0.8, 0.25)).unwrap()
+        CoupledMotion::new(problem(load), vec![solid], vec![seat], &options(0.8, 0.25)).unwrap()
     };
     let (mut first, mut second) = (alone(1500.0), alone(700.0));
     let mut assembly = problem(1500.0).assembly();
@@ -570,22 +572,22 @@ fn what_is_not_joined_does_not_feel_the_other() {
         .map(|solid| fitted(&centred, solid, Mount::at_centre(1 + 2 * solid)))
         .into_iter()
         .unzip();
-    let mut both = Exchange::new(assembly, solids, seats, &options(0.8, 0.25)).unwrap();
-    assert_eq!(both.window.to_bits(), first.window.to_bits());
+    let mut both = CoupledMotion::new(assembly, solids, seats, &options(0.8, 0.25)).unwrap();
+    assert_eq!(both.coupling_step.to_bits(), first.coupling_step.to_bits());
     for _ in 0..1500 {
         [&mut first, &mut second, &mut both].into_iter().for_each(|one| one.advance().unwrap());
     }
     for (index, alone) in [&first, &second].into_iter().enumerate() {
         assert_eq!(both.solids[index].solid.displacement, alone.solids[0].solid.displacement);
         for body in 0..2 {
-            let of = |housed: &Exchange, body: usize| {
+            let of = |housed: &CoupledMotion, body: usize| {
                 let at = housed.simulation.system.places.body(body);
                 bits(&housed.simulation.state[at..at + BODY])
             };
             assert_eq!(of(&both, 2 * index + body), of(alone, body));
         }
     }
-    // What one ledger has integrated is booked by windows where there are two.
+    // What one ledger has integrated is booked by coupling steps where there are two.
     for (index, alone) in [first, second].iter_mut().enumerate() {
         let [one, other] = [alone, &mut both].map(|housed| housed.snapshot().unwrap());
         let (integrated, booked) = (one.solids[0].seats[0].work, other.solids[index].seats[0].work);

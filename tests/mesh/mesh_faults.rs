@@ -232,7 +232,7 @@ fn elevation_never_inverts_an_element() {
     let counts = RingMesh { around: 6, radial: 1, axial: 1, radial_growth: 1.0 };
     let Solid { mesh, curved } = ring(&shape, &counts).unwrap();
     let elevated = elevate(&mesh, &curved).unwrap();
-    assert!(elevated.pulled_back > 0);
+    assert!(elevated.moved_back > 0);
     let wrong = found(&elevated.mesh);
     assert!(
         !wrong.iter().any(|f| matches!(f, Fault::Folded { .. } | Fault::Inverted { .. })),

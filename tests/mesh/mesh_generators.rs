@@ -37,7 +37,7 @@ fn sound(solid: &Solid) -> &TetMesh {
 
 fn curved(solid: &Solid) -> TetMesh {
     let elevated = solid.quadratic().unwrap();
-    assert_eq!(elevated.pulled_back, 0, "no node should have to leave its surface");
+    assert_eq!(elevated.moved_back, 0, "no node should have to leave its surface");
     if let Err(faults) = check(&elevated.mesh, &Limits::default()) {
         panic!("{faults}");
     }
@@ -397,7 +397,7 @@ fn thin_walls_stay_round() {
         let cells = BushingMesh { around, radial, axial: 2, grading: 2.0, part: Part::Whole };
         let made = bushing(&body, &cells).unwrap();
         let elevated = made.quadratic().unwrap();
-        assert_eq!(elevated.pulled_back, 0, "{body:?}, {around} around");
+        assert_eq!(elevated.moved_back, 0, "{body:?}, {around} around");
         let [a, b] = [0.5 * inner, 0.5 * inner + thickness];
         let exact = PI * (b * b - a * a) * 20e-3;
         // Parabolas in the place of arcs: of the fourth order in the angle of a cell, of each sleeve.

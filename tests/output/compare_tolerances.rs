@@ -5,7 +5,9 @@ use super::compare_finds::{
     CLASSES, allowed_at, carries_nothing, compared, pair, read_json, with_class,
 };
 
-use bearing_dynamics::output::compare::tolerance::{GivenTolerance, ToleranceClass, Tolerances};
+use bearing_dynamics::output::compare::tolerance::{
+    RequestedTolerance, ToleranceClass, Tolerances,
+};
 use bearing_dynamics::output::compare::{CompareError, Options, compare, report};
 use bearing_dynamics::output::series::Series;
 use serde_json::{Value, json};
@@ -44,7 +46,7 @@ fn the_allowed_difference_is_the_documented_sum() {
 fn an_angle_that_counts_turns_has_the_scale_of_one() {
     let root = tempfile::tempdir().unwrap();
     let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
-    let given = GivenTolerance { scale_relative: 1e-3, floors: Vec::new() };
+    let given = RequestedTolerance { scale_relative: 1e-3, floors: Vec::new() };
     let options = Options { given: Some(given), ..Options::default() };
     let turns = 6994.0;
     for (unit, degree) in [("deg", 1.0), ("rad", 1f64.to_radians())] {
@@ -117,7 +119,7 @@ fn the_floor_of_every_unit_is_its_share_of_a_small_ordinary_value() {
             column(&candidate, unit, value);
             compare(&reference, &candidate, options).unwrap().equal
         };
-        let given = GivenTolerance { scale_relative: 1e-2, floors: Vec::new() };
+        let given = RequestedTolerance { scale_relative: 1e-2, floors: Vec::new() };
         let given = Options { given: Some(given), ..Options::default() };
         for (options, share) in [
             (with_class(ToleranceClass::F64Reordered), 1e-10),

@@ -1,7 +1,7 @@
 //! A shaft whose elements take explicit steps beside what sits on it.
 
 use bearing_dynamics::kinematics::vec3::{Vec3, add, add_scaled, cross, norm, scale, sub};
-use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::coupling::CoupledMotion;
 use bearing_dynamics::output::session::{HousedParts, Motion, Parts, RunRequest, Session, Status};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::shaft::take_shafts;
@@ -44,7 +44,7 @@ fn session(scene: &AssemblyScene, end: f64, turned: bool) -> Session<'static> {
     Session::start(Parts::Housed(Box::new(parts)), &request).unwrap()
 }
 
-fn exchange<'s>(session: &'s Session<'static>) -> &'s Exchange<'static> {
+fn exchange<'s>(session: &'s Session<'static>) -> &'s CoupledMotion<'static> {
     let Motion::Housed(housed) = &session.motion else { panic!("elements") };
     housed
 }
@@ -55,7 +55,7 @@ fn ended(mut session: Session<'static>) -> Session<'static> {
 }
 
 /// Momentum and moment of momentum about the origin of elements and what sits on them, at the bodies' time.
-fn momenta(housed: &Exchange) -> [Vec3; 2] {
+fn momenta(housed: &CoupledMotion) -> [Vec3; 2] {
     let (mut sum, mut about) = ([0.0; 3], [0.0; 3]);
     for part in &housed.solids {
         let solid = &part.solid;
@@ -132,7 +132,7 @@ fn the_ledger_of_all_parts_closes() {
         let largest = |list: Vec<f64>| list.into_iter().map(f64::abs).fold(0.0, f64::max);
         let work = largest(of("shaft_work_loads")) + largest(of("shaft_work_unbalance"));
         let left = largest(of("energy_coupled_residual"));
-        // Windows and steps are of second order: 1e-3 is what runs are held to, this one has 1e-5.
+        // CouplingSteps and steps are of second order: 1e-3 is what runs are held to, this one has 1e-5.
         assert!(work > 1e-3 && left <= 1e-4 * work, "{left} {work}");
         assert!(largest(of("shaft_heat_joints")) > 0.0);
     }
@@ -164,7 +164,7 @@ fn the_spin_is_not_turned_over() {
 #[test]
 fn steps_know_the_springs_of_races() {
     let stiff = "method = \"explicit\", race_stiffness = \"2e12 N/m\", race_damping = \"0 N s/m\"";
-    // Discs so heavy that they do not shorten the windows.
+    // Discs so heavy that they do not shorten the coupling steps.
     let heavy = "mass = \"6 kg\", axial = \"20 kg m^2\", transverse = \"10 kg m^2\"";
     let disc = "mass = \"60 g\", axial = \"1.8e-5 kg m^2\", transverse = \"1e-5 kg m^2\"";
     let still = ("speed = \"6000 rpm\"", "speed = \"0 rpm\"");
@@ -180,15 +180,16 @@ fn steps_know_the_springs_of_races() {
     assert!(left.iter().all(|left| left.abs() <= 1e-6), "{left:?}");
 }
 
-/// Dashpots see velocities that are half a step old: where they are strong, steps and windows are short enough for it.
+/// Dashpots see velocities that are half a step old: where they are strong, steps and coupling steps are short enough for it.
 #[test]
 fn strong_dashpots_do_not_make_energy() {
     let strong = "method = \"explicit\", race_damping = \"1e5 N s/m\"";
     let scene = changed(&[("method = \"explicit\"", strong)]);
     let start = session(&scene, 0.1e-3, true);
-    let [window, step] = [exchange(&start).window, exchange(&start).solids[0].solid.step_size];
+    let [coupling_step, step] =
+        [exchange(&start).coupling_step, exchange(&start).solids[0].solid.step_size];
     // 1e5 N s/m on a race of 60 g; 90 N m s/rad on 1e-5 kg m².
-    assert!(window <= 0.5 * 1e-5 / 90.0 && step <= window, "{window} {step}");
+    assert!(coupling_step <= 0.5 * 1e-5 / 90.0 && step <= coupling_step, "{coupling_step} {step}");
     let ended = ended(start);
     let left = ended.series().unwrap().column("energy_coupled_residual").unwrap().to_vec();
     assert!(left.iter().all(|left| left.abs() <= 1e-6), "{left:?}");
@@ -208,10 +209,10 @@ fn a_watched_section_is_told_at_the_time_of_its_row() {
             let now = three(solid.displacement[node as usize]);
             add_scaled(now, -steps * solid.step_size, rate(node))
         };
-        shaft.watched[0].1.place(at, rate).centre
+        shaft.probes[0].1.place(at, rate).centre
     };
     let (later, earlier) = (place(0.0), place(1.0));
-    let centre = shaft.watched_centres(solid).next().unwrap();
+    let centre = shaft.probe_centres(solid).next().unwrap();
     let step = norm(sub(later, earlier));
     let off = norm(sub(centre, scale(add(later, earlier), 0.5)));
     // What the section turns by in half a step, 3e-5, of the 30 µm that its area's centre may stand beside the axis.

@@ -9,7 +9,7 @@ use bearing_dynamics::members::connection::{Law, MaxwellElement};
 use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
 use bearing_dynamics::vibrations::relaxing::Relaxing;
 use bearing_dynamics::vibrations::rotor::{LinearSystem, RotorModel};
-use bearing_dynamics::vibrations::small_motions::{natural_motions, whirling};
+use bearing_dynamics::vibrations::small_motions::{natural_modes, whirling};
 use bearing_dynamics::vibrations::whirl::Whirl;
 use nalgebra::{Complex, DMatrix, Matrix4};
 
@@ -176,7 +176,7 @@ fn modes_and_critical_speeds_have_what_springs_store() {
             let mut expected: Vec<f64> =
                 masses.flat_map(|mass| [root(mass, 1.0).unwrap_or(0.0); 2]).collect();
             expected.sort_by(f64::total_cmp);
-            let modes = natural_motions(&still, &found, &moving, &[]);
+            let modes = natural_modes(&still, &found, &moving, &[]);
             let mut swings: Vec<f64> = modes.iter().map(|mode| mode.square.sqrt()).collect();
             swings.sort_by(f64::total_cmp);
             assert_eq!(swings.len(), 4);

@@ -34,7 +34,7 @@ fn run_up(changes: &[(&str, &str)]) -> Result<Passage, SimulationError> {
     let scene = changed(changes);
     let run = scene.run().unwrap();
     let mut simulation = Simulation::new(scene.assembly().unwrap(), run.options)?;
-    let (_, middle) = simulation.system.assembly.shafts[0].watched[0].clone();
+    let (_, middle) = simulation.system.assembly.shafts[0].probes[0].clone();
     let mut passage = Passage { peak: 0.0, residual: 0.0 };
     let (mut stored, mut rows) = (0.0f64, 0.0);
     while simulation.time < run.end * (1.0 - 1e-12) {

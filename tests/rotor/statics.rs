@@ -66,7 +66,7 @@ fn assembly(
         weight: Vector3::zeros(),
         centrifugal: 0.0,
     };
-    let held = |x| StaticBody { name: "an outer race".into(), place: Place::Held(at(x)) };
+    let held = |x| StaticBody { name: "an outer race".into(), place: Place::Fixed(at(x)) };
     StaticAssembly {
         bodies: vec![
             section(&shapes, places[0], [0.0; 5]),
@@ -195,7 +195,7 @@ fn a_stiff_shaft_is_a_rigid_body() {
     conditions[3] = Condition::Load(3000.0 * 0.2);
     rigid.bodies[5].place = loaded(conditions);
     for index in 0..3 {
-        rigid.bodies[index].place = Place::Held(at(0.0));
+        rigid.bodies[index].place = Place::Fixed(at(0.0));
     }
     for (bearing, along) in rigid.bearings.iter_mut().zip(places) {
         bearing.mounts[0] = Mount { body: 5, along, reversed: false };

@@ -93,7 +93,7 @@ maxwell = [{ relaxation_time = "1 s", z = "1 N/m" }, { relaxation_time = "2 s", 
     // All that do not say otherwise.
     document.set("spring.maxwell.1.relaxation_time", "5 s").unwrap();
     assert_eq!(
-        document.out_of_reach("spring.maxwell.1.relaxation_time"),
+        document.outside_range("spring.maxwell.1.relaxation_time"),
         (vec!["two".into()], false)
     );
     let first = |index: usize| resolved(&document).springs[index].maxwell[0].relaxation_time;

@@ -69,7 +69,7 @@ probe = [{ name = "disc", at = "200 mm" }]
         (assembly.bearings[1].mounts[0].along, 0.1),
         (shaft.loads[0].section.along, 0.0),
         (shaft.unbalances[0].section.along, 0.2),
-        (shaft.watched[0].1.along, 0.2),
+        (shaft.probes[0].1.along, 0.2),
     ] {
         assert!((centre + along - at).abs() <= 1e-12, "{along} {at}");
     }
@@ -165,7 +165,7 @@ fn faults_of_shafts_in_elements_say_what_is_wrong() {
             beam("speed = \"1000 rpm\"\nz = { load = \"-100 N\" }", ELEMENTS),
             "which loads meet at sections",
         ),
-        (in_elements("below = \"3 kHz\""), "all of their frequencies"),
+        (in_elements("modes_to = \"3 kHz\""), "all of their frequencies"),
         (in_elements("internal_damping = \"1 1/s\""), "body.shaft.beam.internal_damping: refused"),
         (
             in_elements("damping = \"10 1/s\"\ndamped_motion = \"relative-to-rigid\""),

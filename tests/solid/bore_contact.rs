@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use bearing_dynamics::ch2_housing::bore_contact::{
-    ContactNode, Cylinder, Frame, Penalty, contact, contact_nodes, split_by_reach, touch,
+    ContactNode, Cylinder, Frame, Penalty, contact, contact_nodes, split_by_distance, touch,
 };
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::euler::quaternion;
@@ -376,7 +376,7 @@ proptest! {
         let reach = 5e-6;
         let frame = Frame::new(&start);
         let smaller = Cylinder { radius: CYLINDER.radius - 10e-6, ..CYLINDER };
-        let (near, far) = split_by_reach(&smaller, &frame, &nodes, still, reach);
+        let (near, far) = split_by_distance(&smaller, &frame, &nodes, still, reach);
         prop_assert_eq!(near.len() + far.len(), nodes.len());
         prop_assert!(!far.is_empty());
         let by = way.map(|x| 0.99 * reach * x / norm(way));

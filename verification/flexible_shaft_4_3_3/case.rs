@@ -152,7 +152,7 @@ impl Setup {
         let mut held = Vec::new();
         for (index, place) in self.bearings.into_iter().enumerate() {
             let name = format!("outer race {}", index + 1);
-            bodies.push(StaticBody { name, place: Place::Held(at(place)) });
+            bodies.push(StaticBody { name, place: Place::Fixed(at(place)) });
             let alone = bearings::problem(&self.lengths(), Hertz::Fit, self.phase, free)?;
             held.push(StaticBearing {
                 name: Some((index + 1).to_string()),

@@ -12,8 +12,8 @@ use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Curve, OrbitPlot, orbit};
 use bearing_dynamics::solids::bore_equilibrium::BoreState;
 use bearing_dynamics::solids::condensation::geometry_error;
-use bearing_dynamics::solids::fixed_interface_modes::swinging_housing;
-use bearing_dynamics::solids::reduction::lowest_shapes;
+use bearing_dynamics::solids::fixed_interface_modes::vibrating_housing;
+use bearing_dynamics::solids::reduction::lowest_modes;
 use bearing_dynamics::solids::stress::nodal_stresses;
 use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 
@@ -127,8 +127,8 @@ fn turn(
     let outer_race = hollow_cylinder(31.953e-3, BORE_RADIUS, WIDTH, Material::STEEL.density);
     let inner_race = hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density);
     let last = &moments[POINTS - 1].state;
-    let (natural, _) = lowest_shapes(&solid, &bore, 4)?;
-    let housing = swinging_housing(search.bore(), OUTER, &natural, 0.0);
+    let (natural, _) = lowest_modes(&solid, &bore, 4)?;
+    let housing = vibrating_housing(search.bore(), OUTER, &natural, 0.0);
     let bodies = moving([inner_race, outer_race], [true; 5]);
     let lowest = lowest_frequency(&last.stiffness, &bodies, &[housing]).unwrap_or(f64::NAN);
     let drawn = pictures.map(|magnification| {

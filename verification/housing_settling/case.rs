@@ -8,7 +8,7 @@ use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::condensation::CondensedBore;
@@ -53,7 +53,7 @@ struct Settled {
     /// N, on the outer race.
     force: [f64; 2],
     residual: f64,
-    windows: u64,
+    coupling_steps: u64,
     elements: usize,
     seconds: [f64; 2],
 }
@@ -104,11 +104,11 @@ fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, Case
         reach: f64::INFINITY,
     };
     let options =
-        ExchangeOptions { solid_fraction: 0.9, seat_phase: 0.5, bearing: motion::fixed_step(2e-6) };
+        CouplingOptions { solid_fraction: 0.9, seat_phase: 0.5, bearing: motion::fixed_step(2e-6) };
     let displacement = bore.displacement(&first.bore.loads);
     let elements = model.problem.elements.len();
     let clock = Instant::now();
-    let mut housed = Exchange::new(
+    let mut housed = CoupledMotion::new(
         problem,
         vec![SolidPart::displaced(None, model, displacement)],
         vec![seat],
@@ -126,7 +126,7 @@ fn settle(letter: char, cells: [usize; 3], order: Order) -> Result<Settled, Case
         moving: [[inner[1], inner[2]], [outer[1], outer[2]]],
         force: [force[1], force[2]],
         residual: snapshot.residual.abs() / snapshot.turned_over,
-        windows: housed.exchanges,
+        coupling_steps: housed.exchanges,
         elements,
         seconds: [statics, clock.elapsed().as_secs_f64()],
     })
@@ -193,10 +193,12 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     settled.residual,
                 )
                 .closed_form(0.0, "the ledger of both together closes")
-                .absolute(5e-10, "of second order in the window, and damping took most of the work, so that it is 5e-11; ten times that"),
+                .absolute(5e-10, "of second order in the coupling_step, and damping took most of the work, so that it is 5e-11; ten times that"),
             );
-            context
-                .work(&format!("windows, housing {letter}, {}", name_of(order)), settled.windows);
+            context.work(
+                &format!("windows, housing {letter}, {}", name_of(order)),
+                settled.coupling_steps,
+            );
             rows.push(vec![
                 letter.to_string(),
                 name_of(order).into(),

@@ -8,7 +8,7 @@ use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::members::reduced_solid::ReducedSolid;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::motion::reduced_start::{
     Housing, add_housing, ball_frequency, put_in_equilibrium,
@@ -318,7 +318,7 @@ fn explicit(
         nodes: housings::bore_nodes(&whole.mesh)?,
         reach: f64::INFINITY,
     };
-    let options = ExchangeOptions {
+    let options = CouplingOptions {
         solid_fraction: 0.9,
         seat_phase: 0.25,
         bearing: RunOptions { integrator: Integrator::RungeKutta, ..motion::fixed_step(1e-6) },
@@ -326,15 +326,15 @@ fn explicit(
     let displacement = whole.bore.displacement(&start.loads);
     let watch = Stopwatch::start();
     let solid = SolidPart::displaced(None, whole.model.clone(), displacement);
-    let mut housed = Exchange::new(problem, vec![solid], vec![seat], &options)?;
-    let windows = housed.divide(INTERVAL)?;
-    let place = |housed: &Exchange| {
+    let mut housed = CoupledMotion::new(problem, vec![solid], vec![seat], &options)?;
+    let coupling_steps = housed.divide(INTERVAL)?;
+    let place = |housed: &CoupledMotion| {
         let [_, y, z] = housed.simulation.body(OUTER).position;
         [y, z]
     };
     let mut places = vec![place(&housed)];
     for _ in 0..(end / INTERVAL).round() as usize {
-        for _ in 0..windows {
+        for _ in 0..coupling_steps {
             housed.advance()?;
         }
         places.push(place(&housed));

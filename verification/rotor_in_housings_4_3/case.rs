@@ -435,7 +435,7 @@ fn at_the_same_angles(
         angles.push((1..=bearing.geometry.ball_count).map(of).collect::<Result<Vec<_>, _>>()?);
     }
     let shafts = &course.assembly.shafts;
-    let (_, mid) = shafts[0].watched.first().ok_or_else(|| CaseError::message("no section"))?;
+    let (_, mid) = shafts[0].probes.first().ok_or_else(|| CaseError::message("no section"))?;
     let mut search = WarmStartedSearch::of(&course.seats);
     let mut way = Way::default();
     for (row, time) in column(moved, "time")?.into_iter().enumerate().skip(first) {

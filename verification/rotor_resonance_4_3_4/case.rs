@@ -26,7 +26,7 @@ pub const CASE: Case = Case {
 type Change<'c> = (&'c str, &'c str);
 
 /// Beside the middle, mm from it.
-const WATCHED: [i32; 8] = [-190, -150, -100, -50, 50, 100, 150, 190];
+const PROBES: [i32; 8] = [-190, -150, -100, -50, 50, 100, 150, 190];
 const NO_CLEARANCE: &str = "clearance = { radial = \"0 um\" }";
 /// Balls that carry nothing keep their places and do not rattle.
 const CALM: [Change; 2] = [("[bearing.left]", CAGE), ("law = \"none\"\n", DAMPED)];
@@ -107,7 +107,7 @@ fn clearance(radial: f64) -> String {
 
 /// With this clearance, µm, in pillow blocks.
 fn housed(radial: f64) -> Result<Done, CaseError> {
-    let watch: Vec<String> = WATCHED
+    let watch: Vec<String> = PROBES
         .iter()
         .enumerate()
         .map(|(i, at)| format!("{{ name = \"s{i}\", at = \"{at} mm\" }}"))
@@ -415,6 +415,10 @@ fn quarter_turns(context: &mut CaseContext, in_blocks: &Done) -> Result<(), Case
         style: Style::Lines,
         curves,
     })?;
-    context.figure("quarter_turns", svg, "Seen from the side, in pillow blocks, as in Fig. 4.22.");
+    context.figure(
+        "quarter_turns",
+        svg,
+        "Observed from the side, in pillow blocks, as in Fig. 4.22.",
+    );
     Ok(())
 }

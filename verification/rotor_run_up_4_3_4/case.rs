@@ -54,7 +54,7 @@ const SHIPPED: Way = Way {
 /// Shapes up to 2 kHz in place of 5 kHz, at half the cost, move heights by less than a thousandth.
 const CALM: Way = Way {
     calm: true,
-    changes: &[("damping = \"100 1/s\"", "below = \"2 kHz\"\ndamping = \"100 1/s\"")],
+    changes: &[("damping = \"100 1/s\"", "modes_to = \"2 kHz\"\ndamping = \"100 1/s\"")],
     ..SHIPPED
 };
 /// Peak of the scene over the published speed, less one.

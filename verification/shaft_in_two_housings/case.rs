@@ -9,8 +9,8 @@ use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::session::{Motion, Parts, Session};
 use bearing_dynamics::solids::condensation::CondensedBore;
-use bearing_dynamics::solids::fixed_interface_modes::swinging_housing;
-use bearing_dynamics::solids::reduction::lowest_shapes;
+use bearing_dynamics::solids::fixed_interface_modes::vibrating_housing;
+use bearing_dynamics::solids::reduction::lowest_modes;
 use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 
 use crate::case::{Case, CaseError, Tier};
@@ -237,8 +237,8 @@ fn frequency_ratio_squared(shaft: &Shaft, bores: &[CondensedBore]) -> Result<f64
         let body = seat.body(&course.assembly);
         let race = bodies.iter().position(|of| of.body == body).unwrap_or(0);
         // As many natural modes as the command takes.
-        let (natural, _) = lowest_shapes(&housing.setup.model, seat.bore, 4)?;
-        masses.push(swinging_housing(bore, race, &natural, seat.damping));
+        let (natural, _) = lowest_modes(&housing.setup.model, seat.bore, 4)?;
+        masses.push(vibrating_housing(bore, race, &natural, seat.damping));
     }
     let lowest = lowest_frequency(&found.solution.with_shapes, &bodies, &masses);
     Ok((PERIOD * lowest.unwrap_or(f64::NAN)).powi(-2))

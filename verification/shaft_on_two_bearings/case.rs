@@ -126,7 +126,7 @@ impl Shaft {
                 position: Vector3::new(x, y, z),
                 orientation: euler::quaternion(0.0, xi, lambda),
             };
-            bodies.push(StaticBody { name: "outer race".into(), place: Place::Held(pose) });
+            bodies.push(StaticBody { name: "outer race".into(), place: Place::Fixed(pose) });
             let free = [Condition::Load(0.0); 5];
             let alone = bearings::problem(&end.lengths, Hertz::Fit, end.phase, free)?;
             let (body, reversed) = (index + 1, end.reversed);

@@ -8,12 +8,12 @@ use bearing_dynamics::equilibrium::quasi_static_sequence::{QuasiStaticFit, Quasi
 use bearing_dynamics::equilibrium::statics::{AssemblySolution, StaticOptions, solve_assembly};
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::kinematics::vec3::Vec3;
-use bearing_dynamics::motion::coupling::{ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::motion::reduced_start::{Housing as Start0, add_housing, put_in_equilibrium};
 use bearing_dynamics::motion::simulation::{RunOptions, Start};
 use bearing_dynamics::numeric::profile::Profile;
-use bearing_dynamics::output::session::{CourseParts, HousedParts, Parts, RunRequest};
+use bearing_dynamics::output::session::{HousedParts, Parts, RunRequest, SequenceParts};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::housing::{HousingSetup, setup};
 use bearing_dynamics::scene::build::shaft::take_shafts;
@@ -99,7 +99,7 @@ impl Shaft {
 
     pub fn quasi_static<'b>(&'b self, bores: &'b [CondensedBore]) -> Result<Parts<'b>, CaseError> {
         let models = self.housings.iter().map(|housing| &housing.setup.model).collect();
-        Ok(Parts::QuasiStaticSequence(Box::new(CourseParts {
+        Ok(Parts::QuasiStaticSequence(Box::new(SequenceParts {
             problem: self.course(bores)?,
             models,
         })))
@@ -203,7 +203,7 @@ impl Shaft {
         let shafts = take_shafts(&self.scene, &mut assembly)?;
         solids.extend(shafts.into_iter().map(|shaft| shaft.part));
         let run = self.scene.run().ok_or_else(|| CaseError::message("no end"))?;
-        let options = ExchangeOptions {
+        let options = CouplingOptions {
             solid_fraction: 0.8,
             seat_phase: 0.25,
             bearing: RunOptions { energy_limit: f64::INFINITY, ..run.options },

@@ -8,7 +8,7 @@ use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
 use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::TetMesh;
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::model::SolidModel;
@@ -27,7 +27,7 @@ pub const POINTS: usize = 72;
 /// Part of a turn's time in which the load comes to its speed: some periods of races and housing, so
 /// that they do not ring.
 const RUN_UP: f64 = 0.125;
-/// Windows of the exchange, as the phase of the outer race on its seat in one of them, and steps of
+/// CouplingSteps of the exchange, as the phase of the outer race on its seat in one of them, and steps of
 /// the housing as a part of their limit.
 const SEAT_PHASE: f64 = 0.5;
 const SOLID_FRACTION: f64 = 0.9;
@@ -105,8 +105,8 @@ pub struct ExplicitTurn {
     /// y and z of the outer race at the times of the course, m.
     pub outer: Vec<[f64; 2]>,
     /// s, and how many of them.
-    pub window: f64,
-    pub windows: u64,
+    pub coupling_step: f64,
+    pub coupling_steps: u64,
     pub solid_steps: usize,
     pub elements: usize,
     /// Energy unaccounted for over all that was turned over, the largest at these times.
@@ -130,9 +130,9 @@ pub fn seat(mesh: &TetMesh) -> Result<Seat, CaseError> {
     })
 }
 
-/// The windows of the plain runs; the bearing takes one step in each.
-pub fn options() -> ExchangeOptions {
-    ExchangeOptions {
+/// The coupling steps of the plain runs; the bearing takes one step in each.
+pub fn options() -> CouplingOptions {
+    CouplingOptions {
         solid_fraction: SOLID_FRACTION,
         seat_phase: SEAT_PHASE,
         bearing: motion::fixed_step(2e-6),
@@ -159,13 +159,13 @@ pub fn explicit(
     let elements = model.problem.elements.len();
     let radius = Profile::Constant(BORE_RADIUS + turning.interference);
     let seat = Seat { radius, ..seat(mesh)? };
-    let mut housed = Exchange::new(
+    let mut housed = CoupledMotion::new(
         problem,
         vec![SolidPart::displaced(None, model, displacement)],
         vec![seat],
         &options(),
     )?;
-    let place = |housed: &Exchange| {
+    let place = |housed: &CoupledMotion| {
         let [_, y, z] = housed.simulation.body(OUTER).position;
         (housed.time(), [y, z])
     };
@@ -179,7 +179,7 @@ pub fn explicit(
             housed.advance()?;
             now = place(&housed);
         }
-        // A window is next to nothing of a turn; at the start there is none yet.
+        // A coupling step is next to nothing of a turn; at the start there is none yet.
         let part = if now.0 > before.0 { (time - before.0) / (now.0 - before.0) } else { 0.0 };
         outer.push([0, 1].map(|i| before.1[i] + part * (now.1[i] - before.1[i])));
         let snapshot = housed.snapshot()?;
@@ -187,8 +187,8 @@ pub fn explicit(
     }
     Ok(ExplicitTurn {
         outer,
-        window: housed.window,
-        windows: housed.exchanges,
+        coupling_step: housed.coupling_step,
+        coupling_steps: housed.exchanges,
         solid_steps: housed.solids[0].steps,
         elements,
         residual,

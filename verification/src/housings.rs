@@ -105,7 +105,7 @@ pub fn condensed(mesh: &TetMesh, solid: &SolidModel) -> Result<CondensedBore, Ca
 /// Interference (m; negative for a clearance) between race and bore.
 pub fn fit(interference: f64) -> Fit {
     let radius = BORE_RADIUS + interference;
-    Fit { radius, axial: Axial::Held }
+    Fit { radius, axial: Axial::Fixed }
 }
 
 pub fn search(bore: &CondensedBore) -> HousedSearch<'_> {

@@ -173,7 +173,7 @@ pub fn run_up(assembly: Assembly, way: &Way, end: f64) -> Result<Done, CaseError
     let mut simulation = Simulation::new(assembly, options)?;
     let watch = Stopwatch::start();
     simulation.snapshot();
-    let (_, section) = simulation.system.assembly.shafts[0].watched[0].clone();
+    let (_, section) = simulation.system.assembly.shafts[0].probes[0].clone();
     let mut done = Done::default();
     let (mut next, mut stored) = (0.0, 0.0f64);
     while simulation.time < end * (1.0 - 1e-12) {

@@ -8,7 +8,7 @@ use bearing_dynamics::assembly::state::{BODY, BodyState, VELOCITY};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::motion::coupling::{Exchange, ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
@@ -46,7 +46,7 @@ const INTERFERENCE: f64 = 1e-6;
 /// Young's modulus of Table 2.3's steel and its damping, 1/s; and a bushing that gives way and damps.
 const STEEL: [f64; 2] = [210e9, 77.0];
 const DAMPER: [f64; 2] = [2e9, 2e4];
-/// Windows between two samples.
+/// CouplingSteps between two samples.
 const EVERY: u64 = 20;
 
 fn impact() -> Profile {
@@ -63,7 +63,7 @@ struct History {
     impulse: f64,
     /// Largest, over all that was turned over.
     residual: f64,
-    windows: u64,
+    coupling_steps: u64,
     /// kg, N/m: what the lumped model takes.
     masses: [f64; 3],
     support: f64,
@@ -102,13 +102,13 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
         nodes: bore_nodes(&mesh)?,
         reach: f64::INFINITY,
     };
-    let options = ExchangeOptions {
+    let options = CouplingOptions {
         solid_fraction: 0.9,
         seat_phase: 0.25,
         bearing: motion::fixed_step(2e-6),
     };
     let displacement = bore.displacement(&fitted.loads);
-    let mut housed = Exchange::new(
+    let mut housed = CoupledMotion::new(
         problem,
         vec![SolidPart::displaced(None, model, displacement)],
         vec![seat],
@@ -121,7 +121,7 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
         }
         housed.simulation.snapshot();
         let force = housed.simulation.system.sets[0].on_races[1].force[2];
-        history.impulse += 0.5 * (force + before) * EVERY as f64 * housed.window;
+        history.impulse += 0.5 * (force + before) * EVERY as f64 * housed.coupling_step;
         history.times.push(housed.time());
         history.force.push(force);
         if housed.exchanges.is_multiple_of(64 * EVERY) {
@@ -130,7 +130,7 @@ fn run_with([young, damping]: [f64; 2]) -> Result<History, CaseError> {
             history.residual = largest([history.residual, part]);
         }
     }
-    history.windows = housed.exchanges;
+    history.coupling_steps = housed.exchanges;
     let bearing = &housed.simulation;
     let layout = bearing.system.sets[0].layout;
     let inner = BodyState::from_slice(&bearing.state[layout.inner()..layout.inner() + BODY]);
@@ -239,7 +239,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             steel.residual,
         )
         .closed_form(0.0, "the ledger of both together closes")
-        .absolute(4e-8, "of second order in the window, 5e-9 in this run"),
+        .absolute(4e-8, "of second order in the coupling_step, 5e-9 in this run"),
     );
     let model = lumped(&steel);
     let peak = lowest(steel.force.iter().copied());
@@ -292,7 +292,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             100.0 * kept(&strong)
         ),
     );
-    context.work("windows", steel.windows + strong.windows);
+    context.work("windows", steel.coupling_steps + strong.coupling_steps);
     context.table(
         "impact",
         "Force of the balls on the outer race",
@@ -313,7 +313,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
                     format!("{:.1}", lowest(model.iter().map(|[_, force]| *force))),
                     format!("{:.1}", swing(history, spans[0].0, spans[0].1)),
                     format!("{:.1}", swing(history, spans[1].0, spans[1].1)),
-                    history.windows.to_string(),
+                    history.coupling_steps.to_string(),
                 ]
             })
             .collect(),

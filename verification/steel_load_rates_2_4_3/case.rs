@@ -7,7 +7,7 @@ use bearing_dynamics::assembly::lists::OUTER;
 use bearing_dynamics::assembly::loads::Drive;
 use bearing_dynamics::equilibrium::statics::Condition;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::motion::coupling::{Exchange, SolidPart};
+use bearing_dynamics::motion::coupling::{CoupledMotion, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
@@ -46,7 +46,7 @@ const INTERFERENCE: f64 = 1e-6;
 const CELLS: [usize; 3] = [24, 1, 1];
 /// Part by which the two ways to equilibrium may differ.
 const STILL_GAP: f64 = 2e-3;
-/// Windows between two samples.
+/// CouplingSteps between two samples.
 const EVERY: u64 = 4;
 /// Loads at which curves are compared.
 const STEPS: usize = 20;
@@ -58,7 +58,7 @@ struct Motion {
     path: Path,
     /// Energy unaccounted for, over all that was turned over.
     residual: f64,
-    windows: u64,
+    coupling_steps: u64,
 }
 
 fn drop_of(first: &HousedState, state: &HousedState) -> f64 {
@@ -112,7 +112,7 @@ fn moved(
     let seat = Seat { radius, ..housing_turn::seat(mesh)? };
     let displacement = bore.displacement(&first.bore.loads);
     let options = housing_turn::options();
-    let mut housed = Exchange::new(
+    let mut housed = CoupledMotion::new(
         problem,
         vec![SolidPart::displaced(None, model.clone(), displacement)],
         vec![seat],
@@ -131,7 +131,7 @@ fn moved(
     Ok(Motion {
         path,
         residual: snapshot.residual.abs() / snapshot.turned_over,
-        windows: housed.exchanges,
+        coupling_steps: housed.exchanges,
     })
 }
 
@@ -268,7 +268,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
         ),
     );
     for (duration, motion) in RAMPS.iter().zip(&ramps) {
-        context.work(&format!("windows, {} ms", 1e3 * duration), motion.windows);
+        context.work(&format!("windows, {} ms", 1e3 * duration), motion.coupling_steps);
     }
     transition(context)?;
     let row = |name: &str, motion: &Motion, duration: f64| {
@@ -279,7 +279,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
             format!("{:.3}", 100.0 * bound(frequency, duration)),
             format!("{:.3}", 100.0 * ringing(&motion.path, whole)),
             format!("{:.1e}", motion.residual),
-            motion.windows.to_string(),
+            motion.coupling_steps.to_string(),
         ]
     };
     let mut rows: Vec<Vec<String>> = RAMPS

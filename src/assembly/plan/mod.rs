@@ -43,7 +43,7 @@ pub enum Stage {
     Springs,
     RotatingLoad,
     Unbalance,
-    /// Exchange with solids in explicit steps.
+    /// CoupledMotion with solids in explicit steps.
     Impulses,
     Ledger,
     // Solids.

@@ -21,7 +21,7 @@ pub fn items(assembly: &StaticAssembly, solids: Vec<Item>, centrifugal: &str) ->
     items.push(Item::does(Stage::Evaluation, Subject::Whole, why).costing(1));
     items.push(equilibrium(assembly));
     for (index, body) in assembly.bodies.iter().enumerate() {
-        if matches!(body.place, Place::Held(_)) && body.name != GROUND {
+        if matches!(body.place, Place::Fixed(_)) && body.name != GROUND {
             let of = body.name.strip_prefix("the ").unwrap_or(&body.name);
             let why = "its position is prescribed: no equations for it";
             items.push(Item::skips(Stage::Motion, Subject::Body(index), why).named(Some(of)));
@@ -115,14 +115,15 @@ fn equilibrium(assembly: &StaticAssembly) -> Item {
 
 fn loaded<'s>(assembly: &'s StaticAssembly) -> impl Iterator<Item = &'s Loaded> {
     assembly.bodies.iter().filter_map(|body| match &body.place {
-        Place::Held(_) | Place::Section(_) => None,
+        Place::Fixed(_) | Place::Section(_) => None,
         Place::Loaded(loaded) => Some(loaded),
     })
 }
 
 /// Number of coordinates that follow from loads, and of bodies that have any.
 fn free_coordinates(assembly: &StaticAssembly) -> (usize, usize) {
-    let free = loaded(assembly).map(|body| (0..5).filter(|i| body.given(*i).is_none()).count());
+    let free =
+        loaded(assembly).map(|body| (0..5).filter(|i| body.prescribed(*i).is_none()).count());
     free.fold((0, 0), |(all, bodies), own| (all + own, bodies + usize::from(own > 0)))
 }
 

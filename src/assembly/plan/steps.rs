@@ -4,7 +4,7 @@ use crate::assembly::lists::Assembly;
 use crate::assembly::plan::solid::SolidSteps;
 use crate::assembly::plan::{Item, Stage, Subject, does};
 use crate::members::flexible_shaft::{ElasticShaft, ShaftSteps};
-use crate::members::unbalance::swings;
+use crate::members::unbalance::is_coupled;
 
 /// Stages of one bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub struct BodySteps {
     pub rotating_load: bool,
     pub unbalance: bool,
     /// True if an unbalance is coupled with the spin of a body driven by a torque.
-    pub swings: bool,
+    pub unbalance_coupled: bool,
 }
 
 /// Stages of an assembly.
@@ -64,7 +64,7 @@ impl Steps {
                 foundation: of(Stage::Foundation),
                 rotating_load: of(Stage::RotatingLoad),
                 unbalance: of(Stage::Unbalance),
-                swings: swings(assembly, index),
+                unbalance_coupled: is_coupled(assembly, index),
             }
         };
         let bodies = 0..assembly.bodies.len();

@@ -1,6 +1,6 @@
 //! Contact of a ball with the groove of a race: overlap and the normal load of (2.1).
 //!
-//! A raceway is a torus. Seen in the meridian plane of the race that holds the ball centre, the
+//! A raceway is a torus. Observed in the meridian plane of the race that holds the ball centre, the
 //! ball touches a circular arc from inside, so the overlap depends on the ball's axial and radial
 //! position alone; the contact angle follows from them.
 

@@ -89,7 +89,7 @@ impl StepFactors {
 /// What the stress after a step owes to the state before it, Pa: the total deviatoric stress (2.14)
 /// is (1 + [`StepFactors::total_gain`]) DEV Sⁿ⁺¹ plus this. `history` has Hⱼⁿ, `before` is DEV Sⁿ.
 #[inline]
-pub fn carried(history: &[Sym3], before: &Sym3, factors: &StepFactors) -> Sym3 {
+pub fn relaxed_history(history: &[Sym3], before: &Sym3, factors: &StepFactors) -> Sym3 {
     let mut sum = before.map(|s| -factors.total_gain * s);
     for (h, decay) in history.iter().zip(&factors.decay) {
         for (sum, h) in sum.iter_mut().zip(h) {

@@ -5,8 +5,8 @@ use super::housing::Housing;
 use super::lists::Lists;
 use super::plan::of_housings;
 use super::{defaults, housings, lines};
-use crate::commands::check::{Line, say_json, say_lines};
-use crate::commands::check_mesh::{MeshFile, say_written};
+use crate::commands::check::{Line, print_json, print_lines};
+use crate::commands::check_mesh::{MeshFile, print_written};
 use crate::commands::echo::through;
 use crate::commands::run::{planned_request, request};
 use crate::commands::{CommandResult, echo_run};
@@ -60,8 +60,8 @@ pub fn run(
             None => lines(&Lists::made(scene, made))?,
         };
         let lines = |line: &mut Line| of_scene(scene, &housings, mounting, line);
-        say_lines(document, &common.title, lines, &common.assumptions, &defaults)?;
-        return say_written(written);
+        print_lines(document, &common.title, lines, &common.assumptions, &defaults)?;
+        return print_written(written);
     }
     let mut understood = echo(&Lists::made(scene, made))?;
     if let (Some(run), None) = (scene.run(), scene.one().filter(|one| one.housing.is_some())) {
@@ -76,7 +76,7 @@ pub fn run(
         of["seat"] = seat_section(&housing.setup)?;
         of["mesh"] = mesh_section(&housing.built)?;
     }
-    say_json(understood, echo_run::output(common)?, &common.assumptions, &defaults)
+    print_json(understood, echo_run::output(common)?, &common.assumptions, &defaults)
 }
 
 /// Bearings, their housings and their mounting (`mounting`), one line each.
@@ -200,7 +200,7 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
             let steps = format!(
                 "coupling steps of phase {} of the race-bore contact; the housing by central differences, {} \
                  of the largest stable step; the bearing by {}",
-                housing.window_phase,
+                housing.coupling_phase,
                 housing.step_fraction,
                 stepping(run)
             );

@@ -173,8 +173,8 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
         "fastest": quantity("fastest", *fastest, "Hz")?,
         "cells": { "around": mesh.around, "radial": mesh.radial, "axial": mesh.axial },
     });
-    if let Some(BushingInElements { density, stepping, window_phase }) = elements {
-        echo["window_phase"] = json!(window_phase);
+    if let Some(BushingInElements { density, stepping, coupling_phase }) = elements {
+        echo["coupling_phase"] = json!(coupling_phase);
         echo["density"] = quantity("density", *density, "kg/m^3")?;
         let (method, key, value) = match stepping {
             BushingStepping::Explicit { fraction } => {
@@ -305,7 +305,7 @@ fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
             echo.insert(name.into(), quantity(name, value, unit)?);
         }
     }
-    let axial = if housing.axial == Axial::Held { "held" } else { "free" };
+    let axial = if housing.axial == Axial::Fixed { "fixed" } else { "free" };
     echo.insert("axial".into(), json!(axial));
     let stiffness = match housing.penalty {
         Penalty::PerArea(stiffness) => quantity("stiffness", stiffness, "N/m^3")?,
@@ -321,7 +321,7 @@ fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
     }
     if housing.method == HousingMethod::Explicit {
         for (name, value) in
-            [("step_fraction", housing.step_fraction), ("window_phase", housing.window_phase)]
+            [("step_fraction", housing.step_fraction), ("coupling_phase", housing.coupling_phase)]
         {
             echo.insert(name.into(), quantity(name, value, "1")?);
         }
@@ -329,7 +329,7 @@ fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
     if let Some(modes_to) = housing.modes_to {
         echo.insert("modes_to".into(), quantity("modes_to", modes_to, "Hz")?);
     }
-    if let Some(press) = housing.press {
+    if let Some(press) = housing.bore_load {
         echo.insert("press".into(), quantity("press", press, "N")?);
     }
     Ok(Value::Object(echo))

@@ -131,7 +131,11 @@ impl Housing {
     }
 
     /// Fit of the race in the condensed bore, with its radius over time, m.
-    pub fn course_seat<'b>(&self, bore: &'b CondensedBore, radius: Profile) -> QuasiStaticFit<'b> {
+    pub fn quasi_static_fit<'b>(
+        &self,
+        bore: &'b CondensedBore,
+        radius: Profile,
+    ) -> QuasiStaticFit<'b> {
         QuasiStaticFit {
             name: self.name.clone(),
             bearing: self.bearing,
@@ -258,7 +262,7 @@ impl Housing {
         };
         line("contact stiffness", stiffness);
         let axial = match housing.axial {
-            Axial::Held => "fixed by a shoulder",
+            Axial::Fixed => "fixed by a shoulder",
             Axial::Free => "free",
         };
         line("outer race, axially", axial.into());

@@ -6,7 +6,7 @@ use super::lists::Lists;
 use bearing_dynamics::assembly::lists::{Assembly, Body};
 use bearing_dynamics::assembly::static_lists::StaticAssembly;
 use bearing_dynamics::equilibrium::exact_gap_iteration::solve_with_true_distances;
-use bearing_dynamics::equilibrium::initial::{conditions, given_speed, static_assembly};
+use bearing_dynamics::equilibrium::initial::{conditions, prescribed_speed, static_assembly};
 use bearing_dynamics::equilibrium::quasi_static_sequence::{
     EquilibriumAt, QuasiStaticFit, QuasiStaticProblem,
 };
@@ -16,7 +16,7 @@ use bearing_dynamics::equilibrium::statics::{
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::members::flexible_shaft::{ElasticShaft, ShaftLoad};
-use bearing_dynamics::motion::coupling::{ExchangeOptions, SolidPart};
+use bearing_dynamics::motion::coupling::{CouplingOptions, SolidPart};
 use bearing_dynamics::motion::simulation::RunOptions;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::HousedParts;
@@ -111,7 +111,7 @@ pub fn condensed(housings: &[Housing]) -> Fallible<Vec<CondensedBore>> {
 }
 
 /// Problem of a quasi-static sequence, with the races in their bores.
-pub fn course<'b>(
+pub fn quasi_static_problem<'b>(
     assembly: Assembly,
     housings: &[Housing],
     bores: &'b [CondensedBore],
@@ -122,13 +122,13 @@ pub fn course<'b>(
 /// Fits of the races in their bores, with their radii over time.
 pub fn seats<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiStaticFit<'b>> {
     let seats = housings.iter().zip(bores);
-    seats.map(|(of, bore)| of.course_seat(bore, of.setup.radius(&of.scene))).collect()
+    seats.map(|(of, bore)| of.quasi_static_fit(bore, of.setup.radius(&of.scene))).collect()
 }
 
 /// [`seats`] with the final radii of the races.
 pub fn grown<'b>(housings: &[Housing], bores: &'b [CondensedBore]) -> Vec<QuasiStaticFit<'b>> {
     let seat = |(of, bore): (&Housing, &'b CondensedBore)| {
-        of.course_seat(bore, Profile::Constant(of.setup.fit(&of.scene).radius))
+        of.quasi_static_fit(bore, Profile::Constant(of.setup.fit(&of.scene).radius))
     };
     housings.iter().zip(bores).map(seat).collect()
 }
@@ -204,9 +204,9 @@ fn parts<'p>(
     }
     // The energy balance is that of the whole scene, not of the bearings alone.
     let bearing = RunOptions { energy_limit: f64::INFINITY, ..run.options };
-    let options = first.map_or(ExchangeOptions::without_housings(bearing), |of| ExchangeOptions {
+    let options = first.map_or(CouplingOptions::without_housings(bearing), |of| CouplingOptions {
         solid_fraction: of.step_fraction,
-        seat_phase: of.window_phase,
+        seat_phase: of.coupling_phase,
         bearing,
     });
     Ok(HousedParts { assembly, solids, seats, bushings: Vec::new(), options, threads })
@@ -293,7 +293,7 @@ fn on_body(assembly: &Assembly, body: &Body, t: f64) -> Option<[f64; 2]> {
 
 fn on_shaft(assembly: &Assembly, shaft: &ElasticShaft, t: f64) -> f64 {
     let across = |load: &ShaftLoad| load.force[1].value(t).hypot(load.force[2].value(t));
-    let speed = given_speed(&assembly.bodies[shaft.body], t);
+    let speed = prescribed_speed(&assembly.bodies[shaft.body], t);
     let unbalances = shaft.unbalances.iter().map(|of| of.size * speed * speed);
     shaft.loads.iter().map(across).chain(unbalances).sum()
 }

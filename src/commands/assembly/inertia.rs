@@ -9,7 +9,7 @@ use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::results::quantity;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::excitations::{Excitation, excitations};
-use bearing_dynamics::solids::fixed_interface_modes::swinging_housing;
+use bearing_dynamics::solids::fixed_interface_modes::vibrating_housing;
 use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 use serde_json::{Value, json};
 
@@ -45,7 +45,7 @@ impl FrequencyRatio {
             let body = seat.body(&problem.assembly);
             let Some(race) = bodies.iter().position(|of| of.body == body) else { continue };
             let (natural, _) = natural_modes(housing, bore.bore(), NATURAL)?;
-            masses.push(swinging_housing(bore, race, &natural, seat.damping));
+            masses.push(vibrating_housing(bore, race, &natural, seat.damping));
         }
         let lowest = lowest_frequency(&found.solution.with_shapes, &bodies, &masses);
         Ok(lowest.filter(|lowest| *lowest > 0.0).map(|lowest| FrequencyRatio { lowest, fastest }))

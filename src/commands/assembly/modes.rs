@@ -12,24 +12,24 @@ use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::warnings::of_equilibrium;
-use crate::commands::{CommandResult, Outcome, say};
+use crate::commands::{CommandResult, Outcome, print};
 use bearing_dynamics::assembly::lists::{Assembly, Body};
 use bearing_dynamics::assembly::loads::Rotation;
 use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly, StaticBody};
 use bearing_dynamics::equilibrium::statics::{AssemblySolution, Determinacy};
 use bearing_dynamics::numeric::clock::to_digits;
-use bearing_dynamics::output::natural_motions::{frequency, moves_most, names, write};
+use bearing_dynamics::output::natural_modes::{frequency, moves_most, names, write};
 use bearing_dynamics::output::warnings::{Warning, WarningCode, lines, solid::of_contact_nodes};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::solids::condensation::CondensedBore;
 use bearing_dynamics::solids::fixed_interface_modes::{
-    Natural, natural_shapes_of, swinging_housing,
+    Natural, natural_modes_of, vibrating_housing,
 };
 use bearing_dynamics::solids::memory::modes_of_fixed;
 use bearing_dynamics::solids::modes::Mode as NaturalMode;
 use bearing_dynamics::vibrations::quasi_static_limit::{HousingMass, MovingBody};
 use bearing_dynamics::vibrations::rotor::RotorError;
-use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, natural_motions, whirling};
+use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, natural_modes, whirling};
 use serde_json::json;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -61,13 +61,13 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
             let (natural, beyond) = natural_modes(housing, bore.bore(), NATURAL)?;
             first_left_out = first_left_out.min(beyond);
             let before = housing.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
-            let mass = swinging_housing(bore, race, &natural, seat.damping);
+            let mass = vibrating_housing(bore, race, &natural, seat.damping);
             of_housings.push((before, mass.held.len()));
             masses.push(mass);
         }
     }
     let solution = &moment.solution;
-    let found = natural_motions(still, solution, &bodies, &masses);
+    let found = natural_modes(still, solution, &bodies, &masses);
     if found.is_empty() {
         let hint = "give body.NAME.inertia";
         return Err(format!("{}: a body has no mass. Hint: {hint}", path.display()).into());
@@ -78,7 +78,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         let most = &names[moves_most(mode)];
         let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
     }
-    say(&text)?;
+    print(&text)?;
     let mut warnings = of_equilibrium(scene, still, solution)?;
     let (spinning, no_whirl) = match spinning(assembly, still, solution, &bodies, &masses) {
         Ok(Some(whirling)) => (Some(Spinning::new(whirling, !masses.is_empty())?), None),
@@ -91,11 +91,11 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         Err(error) => return Err(error.into()),
     };
     if let Some(spinning) = &spinning {
-        say(&spinning.text())?;
+        print(&spinning.text())?;
         warnings.extend(spinning.warnings());
     }
     if let Some(why) = &no_whirl {
-        say(&format!("whirl, critical speeds and Campbell diagram not computed: {why}\n"))?;
+        print(&format!("whirl, critical speeds and Campbell diagram not computed: {why}\n"))?;
     }
     let above = |limit: f64| found.iter().filter(|mode| frequency(mode) > limit).count();
     warnings.extend(beyond_modes(assembly, above));
@@ -103,7 +103,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     for (housing, seat) in housings.iter().zip(&moment.solution.seats) {
         warnings.extend(of_contact_nodes(seat).map(|of| of.named(&housing.before())));
     }
-    say(&lines(&warnings))?;
+    print(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let seconds = vec![("solve".into(), start.elapsed().as_secs_f64())];
@@ -120,7 +120,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         written.extend(spinning.write(&folder, title)?);
     }
     written.extend(write(&folder, &names, &found, &record)?);
-    say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
+    print(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
 }
 
@@ -141,7 +141,7 @@ pub(super) fn natural_modes(
     let model = &housing.setup.model;
     refuse_beyond(&modes_of_fixed(bore.unknowns(), usual + 1), "")?;
     let what = format!("{}natural modes of the housing", housing.before());
-    Ok(spun(what, || natural_shapes_of(model, bore, natural))?)
+    Ok(spun(what, || natural_modes_of(model, bore, natural))?)
 }
 
 /// Returns whether a body has a prescribed speed that is not always zero.
@@ -185,7 +185,7 @@ fn beyond_modes(assembly: &Assembly, above: impl Fn(f64) -> usize) -> Option<War
     (beyond > 0).then(|| {
         let text = format!(
             "{beyond} of the modes, those above {limit:.0} Hz, are above the kept modes of {}, so that their frequencies are too high: raise \
-             body.NAME.beam.below",
+             body.NAME.beam.modes_to",
             assembly.bodies[body].name
         );
         Warning::new(WarningCode::BeyondKeptModes, text)

@@ -5,7 +5,7 @@ use super::lists::Lists;
 use super::shapes::{Shapes, shapes};
 use super::windows::windows_text;
 use super::{Fallible, housings, still};
-use crate::commands::plan::say_plan;
+use crate::commands::plan::print_plan;
 use crate::commands::plan_step::{note, refused, step_line};
 use crate::commands::run::{self, planned_request};
 use crate::commands::warnings;
@@ -54,7 +54,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         }
         (Some(settings), Some(HousingMethod::QuasiStatic)) => {
             let fields = fields_line(settings, &of_housings(&housings));
-            (of_course(lists, &housings, settings)?, fields.into_iter().collect())
+            (of_sequence(lists, &housings, settings)?, fields.into_iter().collect())
         }
         (Some(settings), _) => of_steps(lists, &housings, reduced.as_ref(), settings)?,
     };
@@ -82,7 +82,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         let text = "housing.method = rigid: the outer race is fixed, no mesh is read";
         notes.push(note("housing", text));
     }
-    say_plan(&items, &notes)?;
+    print_plan(&items, &notes)?;
     Ok(Outcome::Done)
 }
 
@@ -241,7 +241,7 @@ fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &st
     statics::items(still, solids, centrifugal)
 }
 
-pub fn of_course(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fallible<Vec<Item>> {
+pub fn of_sequence(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fallible<Vec<Item>> {
     const CAGE_ROTATES: &str =
         "in `run`, because the cage rotates; `statics` leaves it out, it is not requested";
     let mut still = still(lists)?;
@@ -264,7 +264,7 @@ pub fn of_one(one: &PlacedBearing, still: &StaticAssembly) -> Fallible<StaticPro
     let problem = static_problem(&one.scene)?;
     Ok(match &still.bodies[0].place {
         Place::Loaded(inner) => StaticProblem { conditions: inner.conditions, ..problem },
-        Place::Held(_) | Place::Section(_) => problem,
+        Place::Fixed(_) | Place::Section(_) => problem,
     })
 }
 
@@ -298,7 +298,7 @@ fn condensed_text(sizes: &Sizes) -> String {
     format!(
         "{} unknowns onto {} of {} bore nodes; left out are {} not under the race and {} too far \
          from it",
-        sizes.unknowns, sizes.kept, sizes.bore, sizes.beside, sizes.out_of_reach
+        sizes.unknowns, sizes.kept, sizes.bore, sizes.beside, sizes.outside_range
     )
 }
 

@@ -94,7 +94,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     for (index, (housing, bore)) in housings.iter().zip(&bores).enumerate() {
         let bearing = &assembly.bearings[housing.bearing];
         let start: Option<&BoreState> = at_rest.as_ref().map(|at_rest| &at_rest.seats[index]);
-        let force = housing.scene.housing.press.unwrap_or(covered.force);
+        let force = housing.scene.housing.bore_load.unwrap_or(covered.force);
         let covered = LargestLoads { force, ..covered };
         let reduction =
             reduction(housing, bore, (bearing, impact), &LargestLoads { start, ..covered })?;

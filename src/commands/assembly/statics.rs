@@ -9,7 +9,7 @@ use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::echo::{frequencies, hertz, sections};
 use crate::commands::warnings::of_equilibrium;
-use crate::commands::{CommandResult, Outcome, pictures, record, say, table};
+use crate::commands::{CommandResult, Outcome, pictures, print, record, table};
 use bearing_dynamics::assembly::static_lists::StaticAssembly;
 use bearing_dynamics::equilibrium::quasi_static_sequence::EquilibriumAt;
 use bearing_dynamics::equilibrium::statics::{StaticProblem, StaticSolution};
@@ -329,7 +329,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
     let folder = asked.folder(Writes::Statics)?;
     let found = find_equilibrium(asked.document, scene, read)?;
     // Printed first, so that an error in a file loses no result.
-    say(&found.text())?;
+    print(&found.text())?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let start = Instant::now();
@@ -344,6 +344,6 @@ pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
     let mut record = found.record.clone();
     record.seconds.push(("plots".into(), start.elapsed().as_secs_f64()));
     written.extend(found.write(&folder, &record)?);
-    say(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
+    print(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
 }

@@ -1,7 +1,7 @@
 //! Coupling steps of bodies and explicit solids in `bearing plan`.
 
 use bearing_dynamics::motion::bonded_bushing::BondedBushing;
-use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::coupling::CoupledMotion;
 use bearing_dynamics::motion::explicit_solid::SteppedSolid;
 use bearing_dynamics::motion::simulation::Stepping;
 use bearing_dynamics::numeric::clock::{to_digits, whole_number};
@@ -20,12 +20,12 @@ pub fn windows_text(
     let all = whole_number(run.end, run.output_interval) * per_row;
     let mut nodes = String::new();
     for seat in housed.seats() {
-        let (tested, out_of_reach) = seat.counts();
+        let (tested, outside_range) = seat.counts();
         let of = seat.seat.suffix();
         nodes += &format!(
-            "; at the start {tested} bore nodes{of} tested for contact, {out_of_reach} too far away"
+            "; at the start {tested} bore nodes{of} tested for contact, {outside_range} too far away"
         );
-        if out_of_reach > 0 {
+        if outside_range > 0 {
             let moved = to_digits(0.5e6 * seat.seat.reach, 3);
             nodes += &format!(", sorted again after each motion of race and bore by {moved} um");
         }
@@ -44,7 +44,7 @@ pub fn windows_text(
     let cut = cut_to_coupling_step(scene, &housed, run);
     Ok(format!(
         "{all} coupling steps of {:.3e} s to t = {} s, each {} and steps of the bearing up to {:.3e} s{cut}{nodes}",
-        housed.window,
+        housed.coupling_step,
         run.end,
         solids.join(" and "),
         housed.simulation.step_size
@@ -52,9 +52,13 @@ pub fn windows_text(
 }
 
 /// Requested steps that are shortened, because no step is longer than a coupling step.
-fn cut_to_coupling_step(scene: &AssemblyScene, housed: &Exchange, run: &RunSettings) -> String {
+fn cut_to_coupling_step(
+    scene: &AssemblyScene,
+    housed: &CoupledMotion,
+    run: &RunSettings,
+) -> String {
     let shorter = |of: f64, than: f64| of < than * (1.0 - 1e-9);
-    let (window, mut text) = (housed.window, String::new());
+    let (coupling_step, mut text) = (housed.coupling_step, String::new());
     let step = housed.simulation.step_size;
     if let Stepping::Fixed(given) = run.options.stepping
         && shorter(step, given)
@@ -67,7 +71,7 @@ fn cut_to_coupling_step(scene: &AssemblyScene, housed: &Exchange, run: &RunSetti
         let settings = &placed.settings;
         let is_default =
             settings.defaults_used.iter().any(|used| used.key.ends_with("step_fraction"));
-        let resulting = window / part.steps as f64 / part.solid.limit.step;
+        let resulting = coupling_step / part.steps as f64 / part.solid.limit.step;
         if !is_default && part.steps == 1 && shorter(resulting, settings.step_fraction) {
             text += &format!(
                 "; housing.step_fraction = {} becomes {}, as its step is cut to the coupling step",

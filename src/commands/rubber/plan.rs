@@ -1,7 +1,7 @@
 //! `bearing plan` of a solid of rubber: stages of each command.
 
 use super::{Prepared, prepare};
-use crate::commands::plan::say_plan;
+use crate::commands::plan::print_plan;
 use crate::commands::plan_step::note;
 use crate::commands::solid::mesh_notes;
 use crate::commands::solid::plan::{fields_line, from};
@@ -24,7 +24,7 @@ pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> Com
         lines.extend(scene.run.as_ref().map(|run| note("steps", &count(run))));
     }
     lines.extend(scene.run.as_ref().map(|run| fields_line(run, &prepared.built.mesh)));
-    say_plan(&all_items(scene, rubber, &prepared), &lines)?;
+    print_plan(&all_items(scene, rubber, &prepared), &lines)?;
     Ok(Outcome::Done)
 }
 

@@ -5,8 +5,8 @@ use crate::commands::asked::Asked;
 use crate::commands::earlier::Writes;
 use crate::commands::memory::refuse_beyond;
 use crate::commands::solid::statics::{WRITTEN, table, write};
-use crate::commands::solid::{record, say_mesh_notes};
-use crate::commands::{CommandResult, Outcome, interruption, placed, say};
+use crate::commands::solid::{print_mesh_notes, record};
+use crate::commands::{CommandResult, Outcome, interruption, placed, print};
 use bearing_dynamics::assembly::plan::counts::Counts;
 use bearing_dynamics::numeric::clock::display_time;
 use bearing_dynamics::output::atomic::write_atomic;
@@ -71,13 +71,13 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
         summary::rubber_statics(setup, built, (time, &found), &stress, section, &record)?;
     let warnings = of_rubber(model, &found.state.displacement)?;
     summary["warnings"] = json!(warnings);
-    say_mesh_notes(built)?;
-    say(&format!("relaxed, under loads and displacements of t = {} s\n", display_time(time)))?;
-    say(&table(&summary))?;
+    print_mesh_notes(built)?;
+    print(&format!("relaxed, under loads and displacements of t = {} s\n", display_time(time)))?;
+    print(&table(&summary))?;
     if let Some((asked, responses)) = &responses {
-        say(&harmonic_table(asked, responses))?;
+        print(&harmonic_table(asked, responses))?;
     }
-    say(&lines(&warnings))?;
+    print(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     write(&folder, &built.mesh, &found.state.displacement, &stress, &series)?;
     let mut files = WRITTEN + 1;
@@ -86,7 +86,7 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
         files += 1;
     }
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
-    say(&format!("wrote {files} files to {}\n", folder.display()))?;
+    print(&format!("wrote {files} files to {}\n", folder.display()))?;
     Ok(Outcome::Done)
 }
 

@@ -8,8 +8,8 @@ mod texts;
 
 pub use prepared::{planned_request, request};
 
-use super::earlier::{Writes, claimed, refuse_half_way, remove_earlier};
-use super::{Changes, CommandResult, Outcome, interruption, results_folder, say};
+use super::earlier::{Writes, claimed, refuse_unfinished_run, remove_earlier};
+use super::{Changes, CommandResult, Outcome, interruption, print, results_folder};
 use bearing_dynamics::motion::bonded_bushing::BondedBushing;
 use bearing_dynamics::motion::explicit_solid::SteppedSolid;
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
@@ -98,20 +98,22 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         },
         None => {
             if remove_earlier(&folder)? {
-                say(&format!("the earlier results in {} are replaced\n", folder.display()))?;
+                print(&format!("the earlier results in {} are replaced\n", folder.display()))?;
             }
             Session::start(parts, &request)?
         }
     };
     seconds.start = start.elapsed().as_secs_f64();
     for note in prepared.notes() {
-        say(&format!("note: {note}\n"))?;
+        print(&format!("note: {note}\n"))?;
     }
     let shared = matches!(session.motion, Motion::Solid(_) | Motion::Housed(_));
     if arguments.threads > 1 && !shared {
-        say("note: --threads has no effect here: only explicit finite elements run in parallel\n")?;
+        print(
+            "note: --threads has no effect here: only explicit finite elements run in parallel\n",
+        )?;
     }
-    say(&texts::announcement(&session, &prepared, &request, choice.as_ref(), kept.as_ref()))?;
+    print(&texts::announcement(&session, &prepared, &request, choice.as_ref(), kept.as_ref()))?;
 
     let start = Instant::now();
     let run = Running {
@@ -177,7 +179,7 @@ fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>,
         return Ok(Some(state::read(folder)?.ok_or_else(none)?));
     }
     if !arguments.fresh {
-        refuse_half_way(folder)?;
+        refuse_unfinished_run(folder)?;
     }
     Ok(None)
 }

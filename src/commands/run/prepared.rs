@@ -14,7 +14,7 @@ use bearing_dynamics::motion::integrator_choice::{Choice, choose};
 use bearing_dynamics::motion::simulation::{RunOptions, Start};
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{
-    CourseParts, Motion, Parts, RubberParts, RunRequest, Session, SolidParts,
+    Motion, Parts, RubberParts, RunRequest, SequenceParts, Session, SolidParts,
 };
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
@@ -172,9 +172,9 @@ impl<'s> Prepared<'s> {
                 method: SolutionMethod::QuasiStaticSequence(bores, _),
                 ..
             } => {
-                let problem = housings::course((**assembly).clone(), housings, bores);
+                let problem = housings::quasi_static_problem((**assembly).clone(), housings, bores);
                 let models = housings.iter().map(|housing| &housing.setup.model).collect();
-                Parts::QuasiStaticSequence(Box::new(CourseParts { problem, models }))
+                Parts::QuasiStaticSequence(Box::new(SequenceParts { problem, models }))
             }
             Prepared::Bearings { assembly, .. } => Parts::from((**assembly).clone()),
             Prepared::Solid { steps: (method, stepping), mesh, .. } => Parts::Solid(SolidParts {
@@ -343,7 +343,7 @@ impl<'s> Prepared<'s> {
                 let scene = lists.scene;
                 let planned = match method {
                     SolutionMethod::QuasiStaticSequence(..) => {
-                        plan::of_course(lists, housings, settings)?
+                        plan::of_sequence(lists, housings, settings)?
                     }
                     _ => {
                         let elements = (&bushings[..], &shafts[..]);

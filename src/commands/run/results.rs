@@ -4,7 +4,7 @@ use super::figures::key_figures;
 use super::prepared::{Fields, Prepared, SolidOf, SolutionMethod};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
-use crate::commands::say;
+use crate::commands::print;
 use crate::commands::warnings::{aliased, of_run};
 use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
@@ -126,15 +126,15 @@ pub(super) fn write_results(
         },
     };
     let written = write_run_results(folder, session, &table, &spectra, &report)?;
-    say(&key_figures(session, &table, seconds.simulate))?;
-    say(&lines(&extras.warnings))?;
+    print(&key_figures(session, &table, seconds.simulate))?;
+    print(&lines(&extras.warnings))?;
     for line in &extras.lines {
-        say(&format!("{line}\n"))?;
+        print(&format!("{line}\n"))?;
     }
     // One more for the state.
     let fields = std::fs::read_dir(folder.join(FOLDER)).map_or(0, |files| files.count() + 1);
     let files = written.len() + plots.len() + fields + extras.files + 1;
-    say(&format!("wrote {files} files to {}\n", folder.display()))?;
+    print(&format!("wrote {files} files to {}\n", folder.display()))?;
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use super::prepared::{Prepared, SolutionMethod};
 use bearing_dynamics::motion::bonded_bushing::{BondedBushing, BondedRubber};
-use bearing_dynamics::motion::coupling::Exchange;
+use bearing_dynamics::motion::coupling::CoupledMotion;
 use bearing_dynamics::motion::explicit_solid::SteppedSolid;
 use bearing_dynamics::motion::integrator_choice::Choice;
 use bearing_dynamics::motion::simulation::{Integrator, Simulation, Stepping as BearingStepping};
@@ -129,7 +129,7 @@ fn of_rubber(moving: &MovingRubber, clock: &Clock) -> String {
     )
 }
 
-fn of_housed(housed: &Exchange, clock: &Clock, request: &RunRequest) -> String {
+fn of_housed(housed: &CoupledMotion, clock: &Clock, request: &RunRequest) -> String {
     let coupling_steps = clock.last.unwrap_or(0);
     let by_accuracy = match request.options.stepping {
         BearingStepping::Accuracy(accuracy) => format!(
@@ -143,17 +143,17 @@ fn of_housed(housed: &Exchange, clock: &Clock, request: &RunRequest) -> String {
     let fits: String = housed
         .seats()
         .map(|fit| {
-            let (tested, out_of_reach) = fit.counts();
+            let (tested, outside_range) = fit.counts();
             let of = fit.seat.suffix();
-            format!("{tested} bore nodes{of} near the race, {out_of_reach} too far for contact\n")
+            format!("{tested} bore nodes{of} near the race, {outside_range} too far for contact\n")
         })
         .collect();
     format!(
         "coupling step {:.4e} s, {}; bearing steps up to {:.4e} s\n{by_accuracy}{fits}{coupling_steps} coupling steps to t = {} s, {}\n",
-        housed.window,
+        housed.coupling_step,
         solids.join("; "),
         housed.simulation.step_size,
-        rounded(coupling_steps as f64 * housed.window),
+        rounded(coupling_steps as f64 * housed.coupling_step),
         rows(clock, "coupling steps")
     )
 }

@@ -1,8 +1,8 @@
 //! `bearing check` of a solid: mesh, sets, supports and loads.
 
 use super::{echo, mesh_notes, prepare};
-use crate::commands::check::{Line, say_json, say_lines};
-use crate::commands::check_mesh::{MeshFile, say_written};
+use crate::commands::check::{Line, print_json, print_lines};
+use crate::commands::check_mesh::{MeshFile, print_written};
 use crate::commands::{CommandResult, placed, rubber};
 use bearing_dynamics::assembly::plan::counts::Counts;
 use bearing_dynamics::kinematics::vec3::Vec3;
@@ -49,11 +49,11 @@ pub fn run(
         let drawn = [(scene.draw_series, "series"), (scene.draw_spectrum, "spectrum")];
         let drawn: Vec<&str> = drawn.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
         let output = json!({ "plots": drawn });
-        return say_json(echo, output, &scene.assumptions, &scene.defaults_used);
+        return print_json(echo, output, &scene.assumptions, &scene.defaults_used);
     }
     let lines = |line: &mut Line| facts.lines(line);
-    say_lines(document, &scene.title, lines, &scene.assumptions, &scene.defaults_used)?;
-    say_written(written)
+    print_lines(document, &scene.title, lines, &scene.assumptions, &scene.defaults_used)?;
+    print_written(written)
 }
 
 impl Facts {

@@ -145,7 +145,7 @@ pub fn rubber(material: &Elastomer, table: Option<&str>) -> Echo {
         "table": table.unwrap_or("none"),
         "rubber_modulus": quantity("rubber_modulus", network.modulus, "Pa")?,
         "chain": quantity("chain", network.locking, "1")?,
-        "chain_pull": match network.pull {
+        "chain_force": match network.pull {
             ChainPull::FiveTerms => "five-terms",
             ChainPull::Exact => "inverse-langevin",
         },

@@ -6,7 +6,7 @@ pub mod modes;
 pub mod plan;
 pub mod statics;
 
-use super::{placed, say};
+use super::{placed, print};
 use bearing_dynamics::assembly::plan::Item;
 use bearing_dynamics::mesh::repair::Repaired;
 use bearing_dynamics::output::results::RunRecord;
@@ -59,8 +59,8 @@ pub fn mesh_notes(built: &BuiltMesh) -> Vec<String> {
     done.into_iter().chain(built.notes.iter().cloned()).collect()
 }
 
-pub fn say_mesh_notes(built: &BuiltMesh) -> Result<(), Box<dyn Error>> {
-    mesh_notes(built).iter().try_for_each(|note| say(&format!("note: {note}\n")))
+pub fn print_mesh_notes(built: &BuiltMesh) -> Result<(), Box<dyn Error>> {
+    mesh_notes(built).iter().try_for_each(|note| print(&format!("note: {note}\n")))
 }
 
 pub fn title(scene: &SolidScene) -> String {

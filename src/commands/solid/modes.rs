@@ -1,11 +1,11 @@
 //! `bearing modes`: natural frequencies and mode shapes of a solid.
 
-use super::{plan, prepare, record, say_mesh_notes};
+use super::{plan, prepare, print_mesh_notes, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::within;
 use crate::commands::rubber::plan::NO_MODES;
-use crate::commands::{CommandResult, Outcome, say};
+use crate::commands::{CommandResult, Outcome, print};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::{file_name, write_list, write_mode};
 use bearing_dynamics::output::results::pretty;
@@ -47,7 +47,7 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     let (mut summary, series) = summary::modes(&model, built, &found, &record)?;
     let warnings = of_modes(&model, &found);
     summary["warnings"] = json!(warnings);
-    say_mesh_notes(built)?;
+    print_mesh_notes(built)?;
     let mut text = "mode        frequency, Hz\n".to_string();
     for (index, mode) in found.modes.iter().enumerate() {
         // Rigid-body modes come first.
@@ -58,8 +58,8 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
         };
         let _ = writeln!(text, "{:>4} {:>20.6}{rigid}", index + 1, mode.frequency);
     }
-    say(&text)?;
-    say(&lines(&warnings))?;
+    print(&text)?;
+    print(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let mut steps = Vec::new();
@@ -72,6 +72,6 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
     series.write_csv(&folder.join("series.csv"))?;
     series.write_npy(&folder.join("series.npy"))?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
-    say(&format!("wrote {} files to {}\n", steps.len() + 5, folder.display()))?;
+    print(&format!("wrote {} files to {}\n", steps.len() + 5, folder.display()))?;
     Ok(Outcome::Done)
 }

@@ -1,7 +1,7 @@
 //! `bearing plan` of a solid: stages of each command.
 
 use super::{Prepared, mesh_notes, prepare};
-use crate::commands::plan::say_plan;
+use crate::commands::plan::print_plan;
 use crate::commands::plan_step::note;
 use crate::commands::{CommandResult, Outcome, memory, rubber};
 use bearing_dynamics::assembly::plan::solid;
@@ -35,7 +35,7 @@ pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     {
         lines.push(step_line(&model, (method, stepping), run.output_interval, run.end));
     }
-    say_plan(&all_items(scene, &prepared), &lines)?;
+    print_plan(&all_items(scene, &prepared), &lines)?;
     Ok(Outcome::Done)
 }
 

@@ -1,10 +1,10 @@
 //! `bearing statics` of a solid.
 
-use super::{Prepared, plan, prepare, record, say_mesh_notes};
+use super::{Prepared, plan, prepare, print_mesh_notes, record};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::within;
-use crate::commands::{CommandResult, Outcome, rubber, say};
+use crate::commands::{CommandResult, Outcome, print, rubber};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::output::atomic::write_atomic;
@@ -65,13 +65,13 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
         summary::statics(&model, setup, built, &solution, &stress, &record)?;
     let warnings = of_equilibrium(&model, &solution.displacement, &stress);
     summary["warnings"] = json!(warnings);
-    say_mesh_notes(built)?;
-    say(&table(&summary))?;
-    say(&lines(&warnings))?;
+    print_mesh_notes(built)?;
+    print(&table(&summary))?;
+    print(&lines(&warnings))?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     write(&folder, &built.mesh, &solution.displacement, &stress, &series)?;
     write_atomic(&folder.join("summary.json"), pretty(&summary).as_bytes())?;
-    say(&format!("wrote {} files to {}\n", WRITTEN + 1, folder.display()))?;
+    print(&format!("wrote {} files to {}\n", WRITTEN + 1, folder.display()))?;
     Ok(Outcome::Done)
 }
 

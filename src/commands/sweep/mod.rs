@@ -10,7 +10,7 @@ mod report;
 mod table;
 
 use super::earlier::{Writes, claimed};
-use super::{CommandResult, Outcome, interruption, reach, results_folder, say};
+use super::{CommandResult, Outcome, interruption, print, reach, results_folder};
 use bearing_dynamics::output::Column;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let grid = Grid::new(&document, &arguments.vary)?;
     for axis in &grid.axes {
         if let Some(note) = reach(&document, "--vary", &axis.key, &axis.key)? {
-            say(&format!("note: {note}\n"))?;
+            print(&format!("note: {note}\n"))?;
         }
     }
     // A scene that cannot be solved at all is said before anything is written.
@@ -115,18 +115,18 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         .into());
     }
     let note = if resumed > 0 { format!(" ({resumed} resumed)") } else { String::new() };
-    say(&format!(
+    print(&format!(
         "{} points{note} in {seconds:.2} s on {threads} thread{}: {}\n",
         grid.len(),
         if threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
     if first.is_ok_and(|first| first.run().is_some()) {
-        say("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
+        print("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
     }
     for warned in report::warnings(&table) {
         let (name, title, points) = (warned.entry.name, warned.entry.title, warned.points);
-        say(&format!(
+        print(&format!(
             "warning[{name}]: {title} ({points} of {} points, the first is point {})\n",
             grid.len(),
             warned.point

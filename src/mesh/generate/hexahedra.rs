@@ -55,7 +55,7 @@ impl Hexahedra {
     /// Joins the blocks and cuts every cell into six tetrahedra.
     ///
     /// # Errors
-    /// [`MeshError::Tangled`] if a cell is folded or inverted relative to the others of its block.
+    /// [`MeshError::InvertedCell`] if a cell is folded or inverted relative to the others of its block.
     pub fn into_mesh(mut self) -> Result<TetMesh, MeshError> {
         if u32::try_from(self.points.len()).is_err() {
             return Err(MeshError::TooLarge { count: self.points.len() });
@@ -74,7 +74,7 @@ impl Hexahedra {
                     }
                     let in_order = volume * sign > 0.0;
                     if !in_order {
-                        return Err(MeshError::Tangled { block, cell: index });
+                        return Err(MeshError::InvertedCell { block, cell: index });
                     }
                     if sign < 0.0 {
                         tet.swap(1, 2);

@@ -78,7 +78,7 @@ impl Housing {
     /// Meshes the housing. Sets: `bore`, `fixed` (the surface that the source fixes), `x_low`, `x_high`.
     ///
     /// # Errors
-    /// [`MeshError::Dimension`] for inconsistent dimensions, [`MeshError::Tangled`]
+    /// [`MeshError::Dimension`] for inconsistent dimensions, [`MeshError::InvertedCell`]
     /// if the bore is too close to the outline.
     pub fn solid(&self, mesh: &HousingMesh) -> Result<Solid, MeshError> {
         divisions("cells around the bore", mesh.around, 8)?;

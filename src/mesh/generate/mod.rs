@@ -43,11 +43,11 @@ impl Solid {
     /// As [`elevate`].
     pub fn quadratic(&self) -> Result<Elevated, MeshError> {
         let elevated = elevate(&self.mesh, &self.curved)?;
-        if elevated.pulled_back == 0 || !self.is_hollow_about_x() {
+        if elevated.moved_back == 0 || !self.is_hollow_about_x() {
             return Ok(elevated);
         }
         let curved = elevate_about_x(&self.mesh)?;
-        Ok(if curved.pulled_back < elevated.pulled_back { curved } else { elevated })
+        Ok(if curved.moved_back < elevated.moved_back { curved } else { elevated })
     }
 
     /// Returns whether the body is bounded by cylinders about the X axis and no node is on the axis.

@@ -2,7 +2,7 @@
 
 use crate::output::compare::channels::{Content, Leaf, LeafValue};
 use crate::output::compare::tolerance::{
-    GivenTolerance, Tolerance, ToleranceClass, ToleranceError, Tolerances, turn,
+    RequestedTolerance, Tolerance, ToleranceClass, ToleranceError, Tolerances, turn,
 };
 use crate::output::compare::unloaded;
 use crate::output::compare::{
@@ -42,7 +42,7 @@ pub struct Judge<'a> {
     pub file: String,
     tolerances: &'a Tolerances,
     default_class: Option<ToleranceClass>,
-    given: Option<&'a GivenTolerance>,
+    given: Option<&'a RequestedTolerance>,
     /// Names in the tolerances that no channel has used yet.
     unused: BTreeSet<&'a str>,
     earliest_in_file: Option<(Order, Divergence)>,
@@ -135,7 +135,7 @@ impl<'a> Judge<'a> {
         }
         let given = self.given.filter(|_| named.is_none());
         let (class, tolerance) = match given {
-            Some(given) => (GivenTolerance::NAME, Some(given.tolerance(unit))),
+            Some(given) => (RequestedTolerance::NAME, Some(given.tolerance(unit))),
             None => {
                 let of = self.tolerances.of_channel(channel, unit, self.default_class);
                 (of.0.name(), of.1)

@@ -15,7 +15,7 @@
 //! same name. In every class but `f64-exact`, the position of a ball that carries no load in the reference is not
 //! compared: see [`unloaded`].
 //!
-//! Runs of different accuracy are compared with a [`GivenTolerance`]. Channels on the time stepping are then not
+//! Runs of different accuracy are compared with a [`RequestedTolerance`]. Channels on the time stepping are then not
 //! compared: see [`is_about_steps`].
 pub mod channels;
 mod judge;
@@ -31,7 +31,7 @@ use channels::{Content, MOST_NAME_BYTES, name_columns_as};
 use judge::Judge;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-use tolerance::{GivenTolerance, ToleranceClass, ToleranceError, Tolerances};
+use tolerance::{RequestedTolerance, ToleranceClass, ToleranceError, Tolerances};
 
 pub use report::{report, to_json};
 
@@ -47,7 +47,7 @@ pub struct Options {
     /// Replaces the `tolerances.json` in the reference folder.
     pub tolerances: Option<Tolerances>,
     /// Tolerances for results of different accuracy; takes precedence over both classes.
-    pub given: Option<GivenTolerance>,
+    pub given: Option<RequestedTolerance>,
 }
 
 #[derive(Debug, Error)]
@@ -126,7 +126,7 @@ pub struct ChannelResult {
     pub file: String,
     pub channel: String,
     pub unit: String,
-    /// Name of its [`ToleranceClass`], or `given` for a [`GivenTolerance`].
+    /// Name of its [`ToleranceClass`], or `given` for a [`RequestedTolerance`].
     pub class: &'static str,
     pub checked: usize,
     pub differing: usize,

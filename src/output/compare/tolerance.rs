@@ -1,7 +1,7 @@
 //! Tolerances of a comparison.
 //!
 //! allowed = absolute floor + relative · |reference| + scale relative · (largest |reference| of
-//! the channel; the components of one vector share theirs). With a [`GivenTolerance`] the scale of an angle is
+//! the channel; the components of one vector share theirs). With a [`RequestedTolerance`] the scale of an angle is
 //! at most one turn, because the size of an angle that counts turns is arbitrary.
 
 use crate::scene::text::input_file;
@@ -135,7 +135,7 @@ impl Tolerance {
 
 /// Tolerance set by the user instead of a class.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct GivenTolerance {
+pub struct RequestedTolerance {
     /// Fraction of the channel's scale: its largest |reference|, shared by the components of one vector; for
     /// an angle at most one turn.
     pub scale_relative: f64,
@@ -143,7 +143,7 @@ pub struct GivenTolerance {
     pub floors: Vec<(String, f64)>,
 }
 
-impl GivenTolerance {
+impl RequestedTolerance {
     pub const NAME: &'static str = "given";
 
     /// # Errors

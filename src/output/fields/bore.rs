@@ -2,7 +2,7 @@
 
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::kinematics::vec3::{Vec3, dot, scale};
-use crate::members::housing_fit::TouchingNode;
+use crate::members::housing_fit::ContactNodeState;
 use crate::motion::system::System;
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::Motion;
@@ -61,7 +61,7 @@ fn seat_nodes(system: &System, solid: usize) -> Vec<BoreNodeState> {
         return Vec::new();
     };
     let surface = &system.assembly.solids[seat.solid].surfaces[seat.surface];
-    let state = |touching: &TouchingNode| {
+    let state = |touching: &ContactNodeState| {
         let node = &surface.nodes[touching.node];
         let load = touching.load / touching.along;
         BoreNodeState {

@@ -6,7 +6,7 @@ use crate::kinematics::vec3::Vec3;
 use crate::members::rigid_body::Wrench;
 use crate::motion::bonded_bushing::BondedPart;
 use crate::motion::bore_friction::FrictionSum;
-use crate::motion::coupling::{Exchange, ExchangeError};
+use crate::motion::coupling::{CoupledMotion, CouplingError};
 use crate::motion::race_in_bore::Seat;
 use crate::output::series::Column;
 use crate::output::session::{HousedParts, LedgerWatch, SessionError};
@@ -151,22 +151,28 @@ impl Recorder {
     /// A value that is not finite, an inverted element, an energy balance that does not close.
     pub(in crate::output) fn record_housed(
         &mut self,
-        housed: &mut Exchange,
+        housed: &mut CoupledMotion,
         watch: &mut LedgerWatch,
         limit: f64,
     ) -> Result<(), SessionError> {
-        let (time, window) = (housed.time(), housed.exchanges);
+        let (time, coupling_step) = (housed.time(), housed.exchanges);
         for part in &housed.solids {
-            check_solid(&part.solid, time, window).map_err(|source| {
+            check_solid(&part.solid, time, coupling_step).map_err(|source| {
                 let name = part.name.clone();
-                ExchangeError::Solid { name, source }
+                CouplingError::Solid { name, source }
             })?;
         }
         let snapshot = housed.snapshot()?;
         let residual = snapshot.residual;
         if !watch.record(residual, snapshot.turned_over, limit) {
             let turned_over = watch.turned_over;
-            return Err(SessionError::EnergyOfBoth { residual, turned_over, limit, time, window });
+            return Err(SessionError::EnergyOfBoth {
+                residual,
+                turned_over,
+                limit,
+                time,
+                coupling_step,
+            });
         }
         self.record(&housed.simulation, &snapshot.simulation);
         // In the order of [`explicit_columns`].
@@ -199,11 +205,11 @@ impl Recorder {
 
 /// # Errors
 /// A value that is not finite, an inverted element.
-fn check_solid(solid: &ExplicitSolid, time: f64, window: u64) -> Result<(), SolidError> {
+fn check_solid(solid: &ExplicitSolid, time: f64, coupling_step: u64) -> Result<(), SolidError> {
     let displacement: Vec<Vec3> = solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
-    check_finite(solid, &displacement, time, window)?;
+    check_finite(solid, &displacement, time, coupling_step)?;
     match first_inverted(&solid.model, &displacement) {
-        Some((element, ratio)) => Err(solid.model.inverted(element, ratio, time, window)),
+        Some((element, ratio)) => Err(solid.model.inverted(element, ratio, time, coupling_step)),
         None => Ok(()),
     }
 }

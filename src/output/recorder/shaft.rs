@@ -1,4 +1,4 @@
-//! Columns of a shaft in elements: its watched sections, its energies, and those of its joints with races.
+//! Columns of a shaft in elements: its probes, its energies, and those of its joints with races.
 
 use super::Recorder;
 use crate::motion::coupling::SolidPart;
@@ -23,7 +23,7 @@ pub(super) fn columns(part: &SolidPart) -> Vec<Column> {
     let Some(shaft) = &part.shaft else { return Vec::new() };
     let name = part.name.as_deref().unwrap_or("shaft");
     let of = |section: &str, axis| Column::new(format!("{name}_{section}_{axis}"), "m");
-    let sections = shaft.watched.iter();
+    let sections = shaft.probes.iter();
     let mut columns: Vec<Column> =
         sections.flat_map(|(section, _)| [of(section, "y"), of(section, "z")]).collect();
     columns.extend(ENERGIES.map(|energy| Column::new(format!("{name}_{energy}"), "J")));
@@ -34,7 +34,7 @@ impl Recorder {
     /// Adds the values in the order of [`columns`].
     pub(super) fn record_shaft(&mut self, part: &SteppedSolid, now: &SolidSnapshot) {
         let Some(shaft) = &part.shaft else { return };
-        let centres = shaft.watched_centres(&part.solid);
+        let centres = shaft.probe_centres(&part.solid);
         self.values.extend(centres.flat_map(|[_, y, z]| [y, z]));
         let of_joints = |of: fn(&JointSnapshot) -> f64| -> f64 { now.joints.iter().map(of).sum() };
         let ledger = &now.ledger;

@@ -8,7 +8,7 @@ use crate::scene::build::solid::{NamedNodes, Support};
 use crate::solids::energy::SolidEnergy;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::SolidError;
-use crate::solids::stress::look;
+use crate::solids::stress::check;
 
 pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {
     let names =
@@ -49,7 +49,7 @@ impl Recorder {
         let displacement: Vec<Vec3> =
             solid.displacement.iter().map(|u| [u[0], u[1], u[2]]).collect();
         check_finite(solid, &displacement, time, step)?;
-        let seen = look(&solid.model, &displacement);
+        let seen = check(&solid.model, &displacement);
         if let Some((element, ratio)) = seen.inverted {
             return Err(solid.model.inverted(element, ratio, time, step).into());
         }

@@ -7,7 +7,7 @@ pub mod size;
 
 pub use crate::assembly::ledger_watch::LedgerWatch;
 pub use crate::motion::clocked::RunRequest;
-pub use motion::{Checkpoint, CourseParts, HousedParts, Motion, Parts, SolidParts};
+pub use motion::{Checkpoint, HousedParts, Motion, Parts, SequenceParts, SolidParts};
 pub use rubber::{MovingRubber, RubberParts};
 pub use size::{TableSize, table_size};
 
@@ -15,7 +15,7 @@ use crate::assembly::plan::counts::{Counts, StageCounts};
 use crate::equilibrium::quasi_static_sequence::QuasiStaticError;
 use crate::kinematics::vec3::Vec3;
 use crate::motion::clocked;
-use crate::motion::coupling::ExchangeError;
+use crate::motion::coupling::CouplingError;
 use crate::motion::simulation::SimulationError;
 use crate::numeric::clock::{Clock, rounded};
 use crate::output::recorder::Recorder;
@@ -49,7 +49,7 @@ pub enum SessionError {
     #[error(transparent)]
     Solid(#[from] SolidError),
     #[error(transparent)]
-    Exchange(#[from] ExchangeError),
+    CoupledMotion(#[from] CouplingError),
     #[error(transparent)]
     QuasiStaticSequence(#[from] QuasiStaticError),
     #[error(transparent)]
@@ -63,11 +63,11 @@ pub enum SessionError {
     )]
     Energy { residual: f64, turned_over: f64, limit: f64, time: f64, step: u64 },
     #[error(
-        "{residual:.3e} J of bearing and housing or bushings are unaccounted for at t = {at} s, coupling step {window}, \
+        "{residual:.3e} J of bearing and housing or bushings are unaccounted for at t = {at} s, coupling step {coupling_step}, \
          more than {limit} of the {turned_over:.3e} J exchanged; take shorter steps \
-         (step_fraction and window_phase of [housing] or of the bushing, numerics.step)", at = rounded(*time)
+         (step_fraction and coupling_phase of [housing] or of the bushing, numerics.step)", at = rounded(*time)
     )]
-    EnergyOfBoth { residual: f64, turned_over: f64, limit: f64, time: f64, window: u64 },
+    EnergyOfBoth { residual: f64, turned_over: f64, limit: f64, time: f64, coupling_step: u64 },
     #[error(
         "{rows} rows of {columns} channels do not fit in memory; use a longer output interval or \
          fewer channels"

@@ -13,8 +13,8 @@ use crate::motion::bonded_bushing::BondedPart;
 use crate::motion::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::motion::clocked;
 use crate::motion::clocked::{Arrival, RunRequest};
-use crate::motion::coupled_checkpoint::{ExchangeCheckpoint, Windows};
-use crate::motion::coupling::{Exchange, ExchangeError, ExchangeOptions, SolidPart};
+use crate::motion::coupled_checkpoint::{CouplingCheckpoint, CouplingSteps};
+use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, SolidPart};
 use crate::motion::race_in_bore::Seat;
 use crate::motion::simulation::{RunOptions, Simulation};
 use crate::numeric::clock::{Clock, whole_number};
@@ -30,7 +30,7 @@ pub enum Parts<'p> {
     Bearing(Box<Assembly>),
     Solid(SolidParts<'p>),
     Housed(Box<HousedParts<'p>>),
-    QuasiStaticSequence(Box<CourseParts<'p>>),
+    QuasiStaticSequence(Box<SequenceParts<'p>>),
     Rubber(RubberParts<'p>),
 }
 
@@ -62,7 +62,7 @@ pub struct HousedParts<'p> {
     pub solids: Vec<SolidPart>,
     pub seats: Vec<Seat>,
     pub bushings: Vec<BondedPart<'p>>,
-    pub options: ExchangeOptions,
+    pub options: CouplingOptions,
     /// Number of threads for the solids; results are the same bits.
     pub threads: usize,
 }
@@ -77,14 +77,14 @@ impl<'p> HousedParts<'p> {
         options: &RunOptions,
     ) -> HousedParts<'p> {
         let bearing = RunOptions { energy_limit: f64::INFINITY, ..*options };
-        let options = ExchangeOptions::without_housings(bearing);
+        let options = CouplingOptions::without_housings(bearing);
         HousedParts { assembly, solids, seats: Vec::new(), bushings, options, threads: 1 }
     }
 }
 
 /// Bodies, bearings and condensed housings of a quasi-static sequence, and the solid models of the housings.
 #[derive(Clone)]
-pub struct CourseParts<'p> {
+pub struct SequenceParts<'p> {
     pub problem: QuasiStaticProblem<'p>,
     /// One model per housing fit.
     pub models: Vec<&'p SolidModel>,
@@ -94,7 +94,7 @@ pub struct CourseParts<'p> {
 pub enum Motion<'p> {
     Bearing(Box<Simulation>),
     Solid(Box<MovingSolid>),
-    Housed(Box<Exchange<'p>>),
+    Housed(Box<CoupledMotion<'p>>),
     QuasiStaticSequence(Box<QuasiStaticSequence<'p>>),
     Rubber(Box<MovingRubber<'p>>),
 }
@@ -146,7 +146,7 @@ impl Motion<'_> {
 pub enum Checkpoint {
     Bearing(Box<BearingCheckpoint>),
     Solid(Box<SolidCheckpoint>, SolidStepLimit),
-    Housed(Box<ExchangeCheckpoint>, Windows),
+    Housed(Box<CouplingCheckpoint>, CouplingSteps),
     QuasiStaticSequence(QuasiStaticCheckpoint),
     /// State, and the number of rows after the first.
     Rubber(Box<RubberCheckpoint>, u64),
@@ -174,7 +174,7 @@ impl<'p> Motion<'p> {
             }
             Parts::Housed(parts) => {
                 let (housed, steps_per_row) = parts.started(interval)?;
-                let step = housed.window;
+                let step = housed.coupling_step;
                 let clock = Clock { step, steps_per_row, ..Clock::default() };
                 (Motion::Housed(Box::new(housed)), clock)
             }
@@ -217,10 +217,16 @@ impl<'p> Motion<'p> {
                 moving.solid.restore(kept);
                 Motion::Solid(moving)
             }
-            (Parts::Housed(parts), Checkpoint::Housed(kept, windows)) => {
+            (Parts::Housed(parts), Checkpoint::Housed(kept, coupling_steps)) => {
                 let HousedParts { assembly, solids, seats, bushings, options, threads } = *parts;
-                let mut housed = Exchange::from_checkpoint(
-                    assembly, solids, seats, bushings, &options, windows, kept,
+                let mut housed = CoupledMotion::from_checkpoint(
+                    assembly,
+                    solids,
+                    seats,
+                    bushings,
+                    &options,
+                    coupling_steps,
+                    kept,
                 )?;
                 housed.share(threads);
                 Motion::Housed(Box::new(housed))
@@ -332,7 +338,7 @@ impl<'p> Motion<'p> {
                 (0..count).try_for_each(|_| housed.advance())?;
                 if clock.is_on_grid(housed.exchanges) {
                     let bearing = &mut housed.simulation;
-                    if let Some(step) = bearing.watch_step().map_err(ExchangeError::from)? {
+                    if let Some(step) = bearing.watch_step().map_err(CouplingError::from)? {
                         bearing.shorten_step(step);
                     }
                 }
@@ -357,7 +363,7 @@ impl<'p> Motion<'p> {
         match self {
             Motion::Bearing(_) => Checkpoint::Bearing(Box::default()),
             Motion::Solid(moving) => Checkpoint::Solid(Box::default(), moving.solid.limit),
-            Motion::Housed(housed) => Checkpoint::Housed(Box::default(), housed.windows()),
+            Motion::Housed(housed) => Checkpoint::Housed(Box::default(), housed.coupling_steps()),
             Motion::QuasiStaticSequence(_) => {
                 Checkpoint::QuasiStaticSequence(QuasiStaticCheckpoint::default())
             }
@@ -414,12 +420,12 @@ impl<'p> HousedParts<'p> {
     /// Initial exchange, with coupling steps that divide the output interval `interval` (s), and their number per row.
     ///
     /// # Errors
-    /// As [`Exchange::new`].
-    pub fn started(self, interval: f64) -> Result<(Exchange<'p>, u64), ExchangeError> {
+    /// As [`CoupledMotion::new`].
+    pub fn started(self, interval: f64) -> Result<(CoupledMotion<'p>, u64), CouplingError> {
         let HousedParts { assembly, solids, seats, bushings, options, threads } = self;
-        let mut housed = Exchange::with_bushings(assembly, solids, seats, bushings, &options)?;
+        let mut housed = CoupledMotion::with_bushings(assembly, solids, seats, bushings, &options)?;
         housed.share(threads);
-        let windows = housed.divide(interval)?;
-        Ok((housed, windows))
+        let coupling_steps = housed.divide(interval)?;
+        Ok((housed, coupling_steps))
     }
 }

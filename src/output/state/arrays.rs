@@ -18,9 +18,9 @@ pub(super) fn arrays_name(steps: u64) -> String {
     format!("state-{steps}.npy")
 }
 
-/// Name of the file with the values of bushings after `windows` coupling steps.
-pub(super) fn bushings_name(windows: u64) -> String {
-    format!("state-{windows}.bushings.npy")
+/// Name of the file with the values of bushings after `coupling_steps` coupling steps.
+pub(super) fn bushings_name(coupling_steps: u64) -> String {
+    format!("state-{coupling_steps}.bushings.npy")
 }
 
 /// Writes the arrays of a checkpoint after `steps` steps: the nodes of all solids in sequence, or of all condensed

@@ -118,8 +118,8 @@ impl BearingEntry {
     pub(super) fn numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
         let limit = self.limit.iter().flat_map(|l| [l.step, l.eigenvalue[0], l.eigenvalue[1]]);
         let watch = &self.step_watch;
-        let watched = watch.stiffest.into_iter().chain(watch.smallest);
-        let limit = limit.chain(watched);
+        let limits = watch.stiffest.into_iter().chain(watch.smallest);
+        let limit = limit.chain(limits);
         let energy = [self.step_size, self.largest_contact_energy].into_iter();
         let energy =
             energy.chain(self.first_energy).chain(self.contact_turnover).chain(self.ledger.0);

@@ -6,10 +6,10 @@ use super::{
     friction_entry::{self, FrictionEntry},
 };
 use crate::equilibrium::quasi_static_sequence::{Effort, QuasiStaticCheckpoint};
-use crate::equilibrium::warm_started_search::CourseMemory;
+use crate::equilibrium::warm_started_search::SearchMemory;
 use crate::motion::checkpoint::Checkpoint as BearingCheckpoint;
 use crate::motion::coupled_checkpoint::{
-    ExchangeCheckpoint, SeatCheckpoint, SteppedCheckpoint, Windows,
+    CouplingCheckpoint, CouplingSteps, SeatCheckpoint, SteppedCheckpoint,
 };
 use crate::motion::race_in_bore::Growth;
 use crate::output::series::SeriesError;
@@ -89,7 +89,7 @@ impl SolidLimitEntry {
 #[serde(deny_unknown_fields)]
 pub struct ExchangeEntry {
     /// Number of steps of each solid in a coupling step.
-    pub steps_per_window: Vec<usize>,
+    pub steps_per_coupling_step: Vec<usize>,
     pub seats: Vec<Vec<SeatEntry>>,
     /// File with the values of all bushings in one column, and the number of values of each.
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -120,7 +120,7 @@ pub struct SeatEntry {
 /// State of a quasi-static sequence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CourseEntry {
+pub struct SequenceEntry {
     /// File with one row per node of all bores in sequence: 1 for a contact node.
     pub arrays: String,
     pub largest_residual: f64,
@@ -159,13 +159,17 @@ impl SolidEntry {
 }
 
 impl ExchangeEntry {
-    pub(super) fn of(kept: &ExchangeCheckpoint, windows: &Windows) -> ExchangeEntry {
+    pub(super) fn of(kept: &CouplingCheckpoint, coupling_steps: &CouplingSteps) -> ExchangeEntry {
         let lengths: Vec<usize> = kept.bushings.iter().map(Vec::len).collect();
         let shafts: Vec<Vec<f64>> = kept.solids.iter().map(|part| part.shaft.clone()).collect();
         let file = || bushings_name(kept.exchanges);
         let seats = |part: &SteppedCheckpoint| part.seats.iter().map(SeatEntry::of).collect();
         ExchangeEntry {
-            steps_per_window: windows.solids.iter().map(|(steps, _)| *steps).collect(),
+            steps_per_coupling_step: coupling_steps
+                .solids
+                .iter()
+                .map(|(steps, _)| *steps)
+                .collect(),
             seats: kept.solids.iter().map(seats).collect(),
             bushings: (!lengths.is_empty()).then(|| (file(), lengths)),
             friction: FrictionEntry::of(kept),
@@ -207,9 +211,9 @@ impl SeatEntry {
     }
 }
 
-impl CourseEntry {
-    pub(super) fn of(kept: &QuasiStaticCheckpoint) -> CourseEntry {
-        CourseEntry {
+impl SequenceEntry {
+    pub(super) fn of(kept: &QuasiStaticCheckpoint) -> SequenceEntry {
+        SequenceEntry {
             arrays: arrays_name(kept.found),
             largest_residual: kept.effort.largest_residual,
             iterations: kept.effort.iterations,
@@ -251,11 +255,11 @@ pub(super) fn checkpoint(
         }
         Parts::Housed(parts) => {
             let simulation = bearing()?.checked(file.time, &parts.assembly)?;
-            let (kept, windows) = exchange(folder, file, parts, simulation)?;
-            Checkpoint::Housed(Box::new(kept), windows)
+            let (kept, coupling_steps) = exchange(folder, file, parts, simulation)?;
+            Checkpoint::Housed(Box::new(kept), coupling_steps)
         }
         Parts::QuasiStaticSequence(parts) => {
-            let sequence = file.course.as_ref().ok_or(MISSING_PART)?;
+            let sequence = file.sequence.as_ref().ok_or(MISSING_PART)?;
             let problem = &parts.problem;
             let nodes: Vec<usize> = problem.seats.iter().map(|s| s.bore.nodes.len()).collect();
             let touching = read_touching(folder, &sequence.arrays, &nodes)?;
@@ -271,7 +275,7 @@ pub(super) fn checkpoint(
                     iterations: sequence.iterations,
                     contact_changes: sequence.contact_changes,
                 },
-                memory: CourseMemory { places, touching },
+                memory: SearchMemory { places, touching },
                 nodes,
             })
         }
@@ -288,14 +292,14 @@ fn exchange(
     file: &StateFile,
     parts: &HousedParts,
     simulation: BearingCheckpoint,
-) -> Result<(ExchangeCheckpoint, Windows), Refused> {
+) -> Result<(CouplingCheckpoint, CouplingSteps), Refused> {
     let exchange = file.exchange.as_ref().ok_or(MISSING_PART)?;
-    let ExchangeEntry { steps_per_window, seats, .. } = exchange;
+    let ExchangeEntry { steps_per_coupling_step, seats, .. } = exchange;
     let count = parts.solids.len();
-    if [file.solids.len(), steps_per_window.len(), seats.len()] != [count; 3] {
+    if [file.solids.len(), steps_per_coupling_step.len(), seats.len()] != [count; 3] {
         return Err(MISSING_PART);
     }
-    if steps_per_window.contains(&0) {
+    if steps_per_coupling_step.contains(&0) {
         return Err(Refused::Damaged("no step from one row to the next"));
     }
     let nodes: Vec<usize> = parts.solids.iter().map(|part| part.model.mass.len()).collect();
@@ -320,13 +324,13 @@ fn exchange(
     let mut seats: Vec<_> = solids.iter_mut().flat_map(|part| &mut part.seats).collect();
     friction_entry::read(folder, exchange.friction.as_ref(), parts, &mut seats)?;
     let limits = file.solids.iter().map(|entry| entry.limit.to_limit());
-    let windows = Windows {
-        window: file.step,
-        solids: steps_per_window.iter().copied().zip(limits).collect(),
+    let coupling_steps = CouplingSteps {
+        coupling_step: file.step,
+        solids: steps_per_coupling_step.iter().copied().zip(limits).collect(),
     };
     let (exchanges, first) = (file.steps, exchange.first);
     let bushings = read_bushings(folder, exchange, parts)?;
-    Ok((ExchangeCheckpoint { simulation, solids, bushings, exchanges, first }, windows))
+    Ok((CouplingCheckpoint { simulation, solids, bushings, exchanges, first }, coupling_steps))
 }
 
 fn read_bushings(

@@ -5,7 +5,7 @@ use super::arrays::{table, write_table};
 use super::entries::Refused;
 use crate::ch4_rotor::bore_friction::Spring;
 use crate::motion::bore_friction::NodeSpring;
-use crate::motion::coupled_checkpoint::{ExchangeCheckpoint, FrictionCheckpoint, SeatCheckpoint};
+use crate::motion::coupled_checkpoint::{CouplingCheckpoint, FrictionCheckpoint, SeatCheckpoint};
 use crate::output::session::HousedParts;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -23,16 +23,16 @@ pub struct FrictionEntry {
     pub seats: Vec<(usize, [f64; 2])>,
 }
 
-fn name(windows: u64) -> String {
-    format!("state-{windows}.friction.npy")
+fn name(coupling_steps: u64) -> String {
+    format!("state-{coupling_steps}.friction.npy")
 }
 
-fn kept(checkpoint: &ExchangeCheckpoint) -> impl Iterator<Item = &FrictionCheckpoint> {
+fn kept(checkpoint: &CouplingCheckpoint) -> impl Iterator<Item = &FrictionCheckpoint> {
     let seats = checkpoint.solids.iter().flat_map(|solid| &solid.seats);
     seats.filter_map(|seat| seat.friction.as_ref())
 }
 
-pub(super) fn write(folder: &Path, checkpoint: &ExchangeCheckpoint) -> Result<(), StateError> {
+pub(super) fn write(folder: &Path, checkpoint: &CouplingCheckpoint) -> Result<(), StateError> {
     let row = |(node, spring): &NodeSpring| -> [f64; WIDTH] {
         let ([a, b, c], [x, y, z]) = (spring.anchor, spring.stretch);
         [f64::from(*node), a, b, c, x, y, z, spring.stiffness]
@@ -46,7 +46,7 @@ pub(super) fn write(folder: &Path, checkpoint: &ExchangeCheckpoint) -> Result<()
 
 impl FrictionEntry {
     /// `None` if all bores are frictionless.
-    pub(super) fn of(checkpoint: &ExchangeCheckpoint) -> Option<FrictionEntry> {
+    pub(super) fn of(checkpoint: &CouplingCheckpoint) -> Option<FrictionEntry> {
         let of = |seat: &FrictionCheckpoint| (seat.springs.len(), [seat.heat, seat.load_work]);
         let seats: Vec<_> = kept(checkpoint).map(of).collect();
         let arrays = name(checkpoint.exchanges);

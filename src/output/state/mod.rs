@@ -31,7 +31,7 @@ use crate::output::session::{
 use crate::solids::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
 use bearing_entry::BearingEntry;
-use entries::{CourseEntry, ExchangeEntry, SolidEntry};
+use entries::{ExchangeEntry, SequenceEntry, SolidEntry};
 use rubber_entry::{RubberEntry, hash_bushing, hash_rubber};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -39,7 +39,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Format version of `state.json`.
-pub const FORM: u32 = 5;
+pub const FORM: u32 = 6;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -83,7 +83,7 @@ pub struct StateFile {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub exchange: Option<ExchangeEntry>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub course: Option<CourseEntry>,
+    pub sequence: Option<SequenceEntry>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub rubber: Option<RubberEntry>,
 }
@@ -91,7 +91,7 @@ pub struct StateFile {
 #[derive(Debug, Error)]
 pub enum StateError {
     #[error(
-        "{} belongs to another scene or mesh: only end, plots and window may change when a run is resumed \
+        "{} belongs to another scene or mesh: only end, plots and coupling_step may change when a run is resumed \
          (housing.fit_ramp defaults to a tenth of the end: write it explicitly); choose \
          another --out, or start again with --fresh",
         path.display()
@@ -314,22 +314,22 @@ fn state_file(sound: &Sound, clock: &Clock, record: &StateRecord) -> StateFile {
         bearing: None,
         solids: Vec::new(),
         exchange: None,
-        course: None,
+        sequence: None,
         rubber: None,
     };
     match &sound.checkpoint {
         Checkpoint::Bearing(kept) => file.bearing = Some(Box::new(BearingEntry::of(kept))),
         Checkpoint::Solid(kept, limit) => file.solids = vec![SolidEntry::of(kept, limit, steps)],
-        Checkpoint::Housed(kept, windows) => {
+        Checkpoint::Housed(kept, coupling_steps) => {
             file.bearing = Some(Box::new(BearingEntry::of(&kept.simulation)));
-            let solids = kept.solids.iter().zip(&windows.solids);
+            let solids = kept.solids.iter().zip(&coupling_steps.solids);
             let entry = |(part, (_, limit)): (&SteppedCheckpoint, &(_, _))| {
                 SolidEntry::of(&part.solid, limit, steps)
             };
             file.solids = solids.map(entry).collect();
-            file.exchange = Some(ExchangeEntry::of(kept, windows));
+            file.exchange = Some(ExchangeEntry::of(kept, coupling_steps));
         }
-        Checkpoint::QuasiStaticSequence(kept) => file.course = Some(CourseEntry::of(kept)),
+        Checkpoint::QuasiStaticSequence(kept) => file.sequence = Some(SequenceEntry::of(kept)),
         Checkpoint::Rubber(kept, _) => file.rubber = Some(RubberEntry::of(kept, steps)),
     }
     file

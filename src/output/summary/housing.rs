@@ -3,7 +3,7 @@
 use super::{Part, solid::limit_section};
 use crate::equilibrium::quasi_static_sequence::EquilibriumAt;
 use crate::kinematics::vec3::Vec3;
-use crate::motion::coupling::Exchange;
+use crate::motion::coupling::CoupledMotion;
 use crate::output::recorder::seat::{SeatRow, prefix};
 use crate::output::results::quantity;
 use crate::output::session::Motion;
@@ -44,8 +44,8 @@ pub fn seat_section(setup: &HousingSetup) -> Part {
 /// A value that is not finite.
 pub fn reduced_section(cut_off: &CutOff, excitations: &[Excitation]) -> Part {
     let mut section = json!({
-        "natural_shapes": cut_off.natural,
-        "patterns_of_the_bore": cut_off.patterns,
+        "natural_modes": cut_off.natural,
+        "static_correction_modes": cut_off.patterns,
         "weight_and_loads": cut_off.own,
         "bore_nodes": cut_off.nodes,
         "masses": "lumped",
@@ -68,7 +68,7 @@ pub fn reduced_section(cut_off: &CutOff, excitations: &[Excitation]) -> Part {
                 }),
             );
         }
-        section["error_of_what_drives"] = driven.into();
+        section["excitation_errors"] = driven.into();
     }
     Ok(section)
 }
@@ -128,8 +128,8 @@ pub fn equilibrium_section(
             "unknowns": sizes.unknowns,
             "bore_nodes": sizes.bore,
             "kept": sizes.kept,
-            "beside_the_race": sizes.beside,
-            "out_of_reach": sizes.out_of_reach,
+            "beyond_race_width": sizes.beside,
+            "outside_contact_range": sizes.outside_range,
             "asymmetry": quantity("asymmetry", bore.asymmetry, "1")?,
             "error_of_fixed_normals": quantity("geometry error", geometry, "m")?,
         },
@@ -161,10 +161,10 @@ pub(super) fn method(motion: &Motion) -> Option<&'static str> {
 }
 
 /// Time steps of a coupled run. Keys of a named solid or fit start with its name.
-pub(super) fn step(housed: &Exchange) -> Part {
+pub(super) fn step(housed: &CoupledMotion) -> Part {
     let bodies = &housed.simulation;
     let mut section = Map::new();
-    section.insert("window".into(), quantity("window", housed.window, "s")?);
+    section.insert("window".into(), quantity("window", housed.coupling_step, "s")?);
     for part in &housed.solids {
         let (of, solid) = (prefix(&part.name), &part.solid);
         let kind = part.kind();
@@ -176,7 +176,7 @@ pub(super) fn step(housed: &Exchange) -> Part {
         section.insert(format!("{name}_bushing"), quantity("step", bushing.step, "s")?);
         section.insert(format!("{name}_bushing_steps_a_window"), json!(bushing.steps));
     }
-    let most = bodies.step_size.min(housed.window);
+    let most = bodies.step_size.min(housed.coupling_step);
     section.insert("bearing_at_most".into(), quantity("step", most, "s")?);
     for part in &housed.solids {
         let limit = limit_section(&part.solid.limit, &part.solid.model.labels)?;
@@ -185,7 +185,7 @@ pub(super) fn step(housed: &Exchange) -> Part {
     Ok(section.into())
 }
 
-pub(super) fn work(housed: &Exchange) -> Value {
+pub(super) fn work(housed: &CoupledMotion) -> Value {
     let mut section = Map::new();
     section.insert("windows".into(), json!(housed.exchanges));
     for part in &housed.solids {
@@ -204,9 +204,9 @@ pub(super) fn work(housed: &Exchange) -> Value {
     section.insert("bearing_evaluations".into(), json!(evaluations));
     for seat in housed.seats() {
         let of = prefix(&seat.seat.name);
-        let (tested, out_of_reach) = seat.counts();
+        let (tested, outside_range) = seat.counts();
         section.insert(format!("{of}bore_nodes_in_reach"), json!(tested));
-        section.insert(format!("{of}bore_nodes_out_of_reach"), json!(out_of_reach));
+        section.insert(format!("{of}bore_nodes_out_of_reach"), json!(outside_range));
         section.insert(format!("{of}bore_node_tests"), json!(seat.tested));
         section.insert(format!("{of}sorts_by_reach"), json!(seat.sorts));
     }

@@ -62,7 +62,7 @@ pub fn mesh_section(built: &BuiltMesh) -> Part {
             "merged_nodes": repaired.merged_nodes,
             "dropped_nodes": repaired.dropped_nodes,
         },
-        "middles_off_curved_surfaces": built.pulled_back,
+        "middles_off_curved_surfaces": built.moved_back,
         "notes": built.notes,
     }))
 }

@@ -163,7 +163,7 @@ pub const TABLE: [Entry; 17] = [
         title: "Chains of the network near their full length",
         meaning: "Chains are stretched beyond 0.8 of their full length, where the five-term series is more than 10 % softer than the inverse \
                   Langevin function.",
-        action: "Compare with `chain_pull = \"inverse-langevin\"`.",
+        action: "Compare with `chain_force = \"inverse-langevin\"`.",
     },
     Entry {
         name: "W13-few-contact-nodes",
@@ -189,7 +189,7 @@ pub const TABLE: [Entry; 17] = [
         title: "Result beyond the kept modes",
         meaning: "A reduced shaft or housing is used beyond the range of its modes: a frequency above the kept ones, or a load on the bore \
                   larger than that of its static correction modes.",
-        action: "Keep more modes (`body.NAME.beam.below`, `housing.modes_to`), or raise `housing.press`.",
+        action: "Keep more modes (`body.NAME.beam.modes_to`, `housing.modes_to`), or raise `housing.bore_load`.",
     },
     Entry {
         name: "W17-whirl-unstable",

@@ -72,7 +72,7 @@ pub fn of_rubber(model: &RubberModel, displacement: &[Vec3]) -> Result<Vec<Warni
     let within = chain <= LONGEST_CHAIN;
     if !within && model.problem.material.network.pull == ChainPull::FiveTerms {
         let text = format!(
-            "chains of the network reach {} of their full length, where the five-term series is more than 10 % too soft: compare with chain_pull = \
+            "chains of the network reach {} of their full length, where the five-term series is more than 10 % too soft: compare with chain_force = \
              \"inverse-langevin\"",
             to_digits(chain, 3)
         );

@@ -131,7 +131,7 @@ pub struct SceneBeam {
     pub loads: Vec<(f64, [Profile; 3])>,
     /// Position, kg·m, and angle in rad from Y towards Z.
     pub unbalances: Vec<(f64, f64, f64)>,
-    pub watched: Vec<(String, f64)>,
+    pub probes: Vec<(String, f64)>,
     /// `None` unless a run steps its elements.
     pub in_elements: Option<RaceJoint>,
 }
@@ -205,7 +205,7 @@ pub struct BushingInElements {
     pub density: f64,
     pub stepping: BushingStepping,
     /// Phase of a body on the bushing in a coupling step, rad.
-    pub window_phase: f64,
+    pub coupling_phase: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -453,8 +453,8 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
     let pushed = pushed.chain(of.unbalances.iter().map(|(at, ..)| *at)).map(|at| (at, false));
     let holds: Vec<(f64, bool)> =
         turned.chain(pushed).map(|(at, turns)| (at - of.start, turns)).collect();
-    let watched: Vec<f64> = of.watched.iter().map(|(_, at)| at - of.start).collect();
-    let (rigid, shapes) = free_shaft(&of.beam, of.kept, &holds, &watched)?;
+    let probes: Vec<f64> = of.probes.iter().map(|(_, at)| at - of.start).collect();
+    let (rigid, shapes) = free_shaft(&of.beam, of.kept, &holds, &probes)?;
     let centre = of.start + rigid.centre;
     move_along(&mut all.bodies[index], centre);
     if let Some(race) = all.bodies[index].driven_mut() {
@@ -477,14 +477,14 @@ fn bend(all: &mut Assembly, index: usize, of: &SceneBeam) -> Result<(), FreeShaf
         size,
         angle,
     });
-    let watched = of.watched.iter().map(|(name, at)| (name.clone(), section(*at)));
+    let sections = of.probes.iter().map(|(name, at)| (name.clone(), section(*at)));
     let shaft = ElasticShaft {
         body: index,
         damping: of.damping,
         internal_damping: of.internal_damping,
         loads: loads.collect(),
         unbalances: unbalances.collect(),
-        watched: watched.collect(),
+        probes: sections.collect(),
         shapes: shapes.clone(),
     };
     let by_torque =

@@ -94,7 +94,7 @@ pub fn flat(mesh: &TetMesh, faces: &[Face]) -> Option<Flat> {
 
 /// Mid-side nodes of a bore's edges compared with the arcs between their corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MiddleNodes {
+pub struct MidSideNodes {
     /// Number of edges with both corners on the cylinder.
     pub count: usize,
     /// Largest sagitta, m: L²/8R of an edge of length L.
@@ -105,7 +105,7 @@ pub struct MiddleNodes {
     pub missing: f64,
 }
 
-impl MiddleNodes {
+impl MidSideNodes {
     /// Returns whether the mesh has straight edges along arcs of a relevant sagitta.
     pub fn straight(&self) -> bool {
         self.sagitta > ROUND && self.missing > LARGEST_MISSING
@@ -113,8 +113,8 @@ impl MiddleNodes {
 }
 
 /// Mid-side nodes of `faces` of ten-node elements. Arcs go through the corners, with their rounding.
-pub fn middle_nodes(mesh: &TetMesh, faces: &[Face], cylinder: &FittedCylinder) -> MiddleNodes {
-    let mut found = MiddleNodes::default();
+pub fn middle_nodes(mesh: &TetMesh, faces: &[Face], cylinder: &FittedCylinder) -> MidSideNodes {
+    let mut found = MidSideNodes::default();
     if mesh.order() == Order::Linear {
         return found;
     }
@@ -166,14 +166,14 @@ pub fn elevate_with_bore(
     // Corners and sides of elements have not changed, and so are the faces.
     let middles = middle_nodes(&elevated.mesh, &on, &cylinder);
     let note = (middles.count > 0).then(|| {
-        let held_back = match elevated.pulled_back {
+        let with_race_fixed = match elevated.moved_back {
             0 => String::new(),
             count => format!(", but for {count} where an element would have folded"),
         };
         format!(
             "the file's four-node elements were raised to ten nodes: the {} mid-side nodes of \"{}\" were \
              put on the cylinder of radius {:.4} mm through its corners, up to {:.1} um off their \
-             chords{held_back}; other edges are straight",
+             chords{with_race_fixed}; other edges are straight",
             middles.count,
             place.set,
             1e3 * cylinder.radius,

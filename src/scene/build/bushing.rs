@@ -27,7 +27,7 @@ pub struct BushingElements {
     pub solved: Solved,
     sleeves: [Sleeve; 2],
     spring: Connection,
-    window_phase: f64,
+    coupling_phase: f64,
 }
 
 /// Integration of the elements of a bushing.
@@ -114,8 +114,8 @@ fn made(
         Sleeve { body: connection.ends[end].body, nodes, arms, nominal }
     };
     let mut sleeves = [sleeve(outer, "outer"), sleeve(1 - outer, "inner")];
-    let carried = carried(&ten, "outer").chain(carried(&ten, "inner")).collect();
-    let model = ten_nodes(&ten, of, carried).map_err(|error| error.to_string())?;
+    let prescribed = sleeve_nodes(&ten, "outer").chain(sleeve_nodes(&ten, "inner")).collect();
+    let model = ten_nodes(&ten, of, prescribed).map_err(|error| error.to_string())?;
     let mut model = model.with_inertia(elements.density);
     for node in sleeves.iter().flat_map(|sleeve| &sleeve.nodes) {
         model.mass[*node as usize] = 0.0;
@@ -133,12 +133,12 @@ fn made(
         }
     };
     let (name, spring) = (spring.name.clone(), connection);
-    let window_phase = elements.window_phase;
-    Ok(BushingElements { name, model, solved, sleeves, spring, window_phase })
+    let coupling_phase = elements.coupling_phase;
+    Ok(BushingElements { name, model, solved, sleeves, spring, coupling_phase })
 }
 
 /// All components of the nodes of a sleeve, which move with a body.
-fn carried<'m>(mesh: &'m TetMesh, set: &str) -> impl Iterator<Item = Prescribed> + use<'m> {
+fn sleeve_nodes<'m>(mesh: &'m TetMesh, set: &str) -> impl Iterator<Item = Prescribed> + use<'m> {
     let nodes = mesh.node_sets.get(set).into_iter().flatten();
     nodes.flat_map(|node| {
         [0, 1, 2].map(|axis| Prescribed { node: *node, axis, profile: Profile::ZERO })
@@ -156,7 +156,7 @@ fn four_nodes(mesh: &TetMesh, of: &BushingOfSpring, density: f64) -> RubberBody 
         density,
         mean_stress: MeanStress::AroundNodes,
         mass_scale: 1.0,
-        prescribed: carried(mesh, "outer").chain(carried(mesh, "inner")).collect(),
+        prescribed: sleeve_nodes(mesh, "outer").chain(sleeve_nodes(mesh, "inner")).collect(),
         loads: Vec::new(),
         gravity: [0.0; 3],
     }
@@ -187,8 +187,8 @@ impl BushingElements {
             }
         };
         let (name, sleeves) = (self.name.clone(), self.sleeves.clone());
-        let (spring, window_phase) = (self.spring.clone(), self.window_phase);
-        BondedPart { name, sleeves, spring, elements, window_phase }
+        let (spring, coupling_phase) = (self.spring.clone(), self.coupling_phase);
+        BondedPart { name, sleeves, spring, elements, coupling_phase }
     }
 
     /// The bushing in a plan, as the `index`-th solid of a run.

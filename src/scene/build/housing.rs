@@ -5,7 +5,7 @@ use crate::kinematics::Pose;
 use crate::mesh::cylinder_fit::fit_cylinder;
 use crate::numeric::profile::Profile;
 use crate::scene::build::bore_shape::{
-    BorePlace, Flat, LARGEST_OUT_OF_ROUND, MiddleNodes, ROUND, flat, middle_nodes,
+    BorePlace, Flat, LARGEST_OUT_OF_ROUND, MidSideNodes, ROUND, flat, middle_nodes,
 };
 use crate::scene::build::solid::{SolidSetup, setup as solid_setup};
 use crate::scene::build::solid_mesh::BuiltMesh;
@@ -78,7 +78,7 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     if distances.is_empty() {
         let centre = nominal.position.x;
         let (count, lies) = (nodes.len(), Lies::of(&seen));
-        return Err(HousingSetupError::BesideTheRace { count, width, centre, lies });
+        return Err(HousingSetupError::NoNodesUnderRace { count, width, centre, lies });
     }
     let corners = place.corner_cylinder(mesh, faces);
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
@@ -110,7 +110,7 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     if let Some(corners) = corners {
         let middles = middle_nodes(mesh, faces, &corners);
         if middles.straight() {
-            let (radius, MiddleNodes { inside, sagitta, missing, .. }) = (corners.radius, middles);
+            let (radius, MidSideNodes { inside, sagitta, missing, .. }) = (corners.radius, middles);
             return Err(HousingSetupError::StraightBore { bore, radius, inside, sagitta, missing });
         }
     }
@@ -132,7 +132,7 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let stands_for_it = SHARES.contains(&share);
     if !stands_for_it {
         let beside = overhang(width, ends);
-        return Err(HousingSetupError::CoarseSeat { width, share, beside });
+        return Err(HousingSetupError::CoarseBore { width, share, beside });
     }
     if let Some(at) = one_row(&nodes, &seen, width) {
         return Err(HousingSetupError::OneRow { count: distances.len(), width, at });
@@ -148,9 +148,9 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     }
     let mut notes = Vec::new();
     notes.extend(overhang(width, ends));
-    notes.extend(beside_the_axis(off_centre, interference));
+    notes.extend(eccentric_bore(off_centre, interference));
     let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at)).map(|(node, _)| node.node);
-    notes.extend(held_nodes(&bore, under.collect(), &solid)?);
+    notes.extend(fixed_nodes(&bore, under.collect(), &solid)?);
     notes.extend(rigid_rings(scene, radius, interference));
     let model = SolidModel::labelled(solid.problem.clone(), solid.labels.clone())?;
     Ok(HousingSetup {
@@ -186,7 +186,7 @@ fn overhang(width: f64, [low, high]: [f64; 2]) -> Option<String> {
 }
 
 /// Note for a bore whose axis is off the race's centre by more than its fit, m.
-fn beside_the_axis(off: f64, interference: f64) -> Option<String> {
+fn eccentric_bore(off: f64, interference: f64) -> Option<String> {
     /// Rounding of drawings and meshes.
     const ROUNDED: f64 = 1e-6;
     (off > interference.abs() + ROUNDED).then(|| {
@@ -199,7 +199,7 @@ fn beside_the_axis(off: f64, interference: f64) -> Option<String> {
 }
 
 /// Bore nodes fixed across the axis by a support.
-fn held_nodes(
+fn fixed_nodes(
     bore: &str,
     under: BTreeSet<u32>,
     solid: &SolidSetup,
@@ -209,7 +209,7 @@ fn held_nodes(
         across.map(|held| held.node).filter(|node| under.contains(node)).collect();
     let count = under.len();
     if held.len() == count {
-        return Err(HousingSetupError::HeldBore { bore: bore.to_string(), count });
+        return Err(HousingSetupError::FixedBore { bore: bore.to_string(), count });
     }
     Ok((!held.is_empty()).then(|| {
         format!(
@@ -320,7 +320,7 @@ impl HousingSetup {
 ///
 /// # Errors
 ///
-/// [`HousingSetupError::VaryingLoad`], [`HousingSetupError::MovedSupport`].
+/// [`HousingSetupError::VaryingLoad`], [`HousingSetupError::PrescribedSupport`].
 pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
     let constant = |profile: &Profile| matches!(profile, Profile::Constant(_));
     let varies = |load: &SetLoad| match &load.kind {
@@ -337,12 +337,12 @@ pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
 ///
 /// # Errors
 ///
-/// [`HousingSetupError::MovedSupport`].
+/// [`HousingSetupError::PrescribedSupport`].
 pub fn check_supports(scene: &HousedScene) -> Result<(), HousingSetupError> {
     for (index, held) in scene.solid.held.iter().enumerate() {
         for (axis, motion) in ["x", "y", "z"].into_iter().zip(&held.motion) {
             if motion.as_ref().is_some_and(|motion| !motion.is_zero()) {
-                return Err(HousingSetupError::MovedSupport { index, axis });
+                return Err(HousingSetupError::PrescribedSupport { index, axis });
             }
         }
     }

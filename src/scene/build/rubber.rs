@@ -82,7 +82,7 @@ fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
 }
 
 /// Samples of prescribed motions between corners.
-const LOOKS: usize = 200;
+const SAMPLES: usize = 200;
 
 /// Checks that the sleeves of a generated bushing stay apart across its wall.
 fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
@@ -90,7 +90,7 @@ fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
     let wall = body.thickness;
     let end = scene.run.as_ref().map_or(0.0, |run| run.end);
     let profiles = scene.held.iter().flat_map(|held| held.motion.iter().flatten());
-    let even = (0..=LOOKS).map(|look| end * look as f64 / LOOKS as f64);
+    let even = (0..=SAMPLES).map(|sample| end * sample as f64 / SAMPLES as f64);
     let times = profiles.flat_map(Profile::corners).filter(|time| *time <= end).chain(even);
     let moved = |set: &str, axis: usize, time: f64| {
         let own = scene.held.iter().filter(|held| held.set == set);

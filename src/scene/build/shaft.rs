@@ -166,8 +166,8 @@ fn places_of(beam: &SceneBeam, sitting: &Sitting) -> Vec<f64> {
     let sitting = sitting.iter().map(|(_, at)| *at);
     let loads = beam.loads.iter().map(|(at, _)| *at);
     let unbalances = beam.unbalances.iter().map(|(at, ..)| *at);
-    let watched = beam.watched.iter().map(|(_, at)| *at);
-    sitting.chain(loads).chain(unbalances).chain(watched).collect()
+    let probes = beam.probes.iter().map(|(_, at)| *at);
+    sitting.chain(loads).chain(unbalances).chain(probes).collect()
 }
 
 /// Outer diameter at a position along X, m: of the thinner segment at a step.
@@ -227,7 +227,7 @@ fn made(
         .unbalances
         .iter()
         .map(|&(at, size, angle)| Ok(SectionUnbalance { section: section(at)?, size, angle }));
-    let watched = beam.watched.iter().map(|(name, at)| Ok((name.clone(), section(*at)?)));
+    let probes = beam.probes.iter().map(|(name, at)| Ok((name.clone(), section(*at)?)));
     let speed = match &body.race.rotation {
         Rotation::Speed(speed) => speed.clone(),
         Rotation::Torque(_) => Profile::ZERO,
@@ -236,7 +236,7 @@ fn made(
         speed,
         joints,
         unbalances: unbalances.collect::<Result<_, Reason>>()?,
-        watched: watched.collect::<Result<_, Reason>>()?,
+        probes: probes.collect::<Result<_, Reason>>()?,
     };
     let mut loads = Vec::new();
     for (at, force) in &beam.loads {

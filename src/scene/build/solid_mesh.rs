@@ -30,7 +30,7 @@ pub struct BuiltMesh {
     pub quality: Quality,
     pub repaired: Repaired,
     /// Mid-side nodes that could not be moved onto a curved surface.
-    pub pulled_back: usize,
+    pub moved_back: usize,
     /// Notes of the reading.
     pub notes: Vec<String>,
     /// Materials of an input deck, for comparison with the scene's.
@@ -138,7 +138,7 @@ fn build_around(
     let mut labels = Labels::default();
     let limits =
         Limits { aspect: request.largest_aspect, cavities: request.cavities, ..Limits::default() };
-    let (mesh, pulled_back) = match &request.source {
+    let (mesh, moved_back) = match &request.source {
         MeshSource::File { path, unit, .. } => {
             let bytes = input_file::read(path, LARGEST_DATA)
                 .map_err(|source| SolidMeshError::File { path: path.clone(), source })?;
@@ -167,11 +167,11 @@ fn build_around(
                 let faults = named(faults, &labels);
                 SolidMeshError::Faults { path: path.clone(), faults }
             })?;
-            let (mesh, pulled_back, bent) = from_file(mesh, request, bore, path)?;
+            let (mesh, moved_back, bent) = from_file(mesh, request, bore, path)?;
             notes.extend(bent);
             // Mid-side nodes come last, and the file has none of them.
             labels.nodes.resize(mesh.nodes.len(), None);
-            (mesh, pulled_back)
+            (mesh, moved_back)
         }
         made => {
             let cells = cells(made);
@@ -187,10 +187,10 @@ fn build_around(
                 SolidMeshError::Made { key, source }
             };
             let solid = generate(made).map_err(failed)?;
-            let (mut mesh, pulled_back) = of_order(solid, request.order).map_err(failed)?;
-            if pulled_back > 0 {
+            let (mut mesh, moved_back) = of_order(solid, request.order).map_err(failed)?;
+            if moved_back > 0 {
                 notes.push(format!(
-                     "{pulled_back} mid-side nodes are not on their curved surfaces, because elements thinner than the sagitta of a \
+                     "{moved_back} mid-side nodes are not on their curved surfaces, because elements thinner than the sagitta of a \
                       cell would fold: the body is a polygon there; take more cells around, or fewer through the wall"
                 ));
             }
@@ -202,7 +202,7 @@ fn build_around(
                 let faults = named(faults, &labels);
                 SolidMeshError::MadeFaults { faults }
             })?;
-            (mesh, pulled_back)
+            (mesh, moved_back)
         }
     };
     let mesh = with_sets(mesh, request)?;
@@ -214,7 +214,7 @@ fn build_around(
         }
         false => (mesh, labels),
     };
-    Ok(BuiltMesh { quality: quality(&mesh), mesh, labels, repaired, pulled_back, notes, materials })
+    Ok(BuiltMesh { quality: quality(&mesh), mesh, labels, repaired, moved_back, notes, materials })
 }
 
 fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {
@@ -263,7 +263,7 @@ fn from_file(
                 None => elevate(&mesh, &[]).map(|elevated| (elevated, None)),
             };
             let (elevated, note) = raised.map_err(|source| in_mesh(path, source))?;
-            Ok((elevated.mesh, elevated.pulled_back, note))
+            Ok((elevated.mesh, elevated.moved_back, note))
         }
         _ => Ok((mesh, 0, None)),
     }
@@ -274,7 +274,7 @@ fn of_order(solid: Solid, order: Option<Order>) -> Result<(TetMesh, usize), Mesh
         return Ok((solid.mesh, 0));
     }
     let elevated = solid.quadratic()?;
-    Ok((elevated.mesh, elevated.pulled_back))
+    Ok((elevated.mesh, elevated.moved_back))
 }
 
 /// Approximate number of hexahedra of a generator.

@@ -42,7 +42,7 @@ pub(crate) fn is_assembly(document: &Document) -> bool {
 /// # Errors
 /// The first thing missing or contradictory, in the order of the scene.
 pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError> {
-    refuse_strange_names(document)?;
+    refuse_invalid_names(document)?;
     let bodies: Vec<&str> = document.names("body").collect();
     let names: Vec<Option<&str>> = match document.names("bearing").map(Some).collect::<Vec<_>>() {
         none if none.is_empty() => vec![None],
@@ -50,10 +50,10 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     };
     let mut defaults_used = Vec::new();
     // Defaults that all bearings share.
-    let mut told = Vec::new();
+    let mut shared = Vec::new();
     let mut bearings = Vec::with_capacity(names.len());
     for name in names {
-        bearings.push(bearing(document, name, &bodies, &mut told)?);
+        bearings.push(bearing(document, name, &bodies, &mut shared)?);
     }
     refuse_shared_places(document, &bearings)?;
     refuse_mixed_methods(document, &bearings)?;
@@ -72,7 +72,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     refuse_races_apart(document, &bearings, &resolved)?;
     refuse_thick_shafts(document, &bearings, &resolved)?;
     refuse_rubber_in_races(document, &bearings, &springs)?;
-    name_what_holds(&mut bearings, &springs);
+    name_supports(&mut bearings, &springs);
     let sensors = Vec::new();
     let scene = AssemblyScene { bearings, bodies: resolved, springs, sensors, defaults_used };
     refuse_shared_columns(document, &scene)?;
@@ -88,7 +88,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
 }
 
 /// Names the springs that support a race without a foundation in its default.
-fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
+fn name_supports(bearings: &mut [PlacedBearing], springs: &[Spring]) {
     for (index, placed) in bearings.iter_mut().enumerate() {
         let of_race = |end: &SpringEnd| end.at == SpringAt::Race { bearing: index, side: 1 };
         let holding = springs.iter().filter(|spring| spring.ends.iter().any(of_race));
@@ -97,8 +97,8 @@ fn name_what_holds(bearings: &mut [PlacedBearing], springs: &[Spring]) {
             continue;
         }
         let defaults = placed.scene.dynamics.defaults_used.iter_mut();
-        for told in defaults.filter(|told| told.key == "outer_race.foundation") {
-            told.reason = format!("the moving outer race is held by spring {}", names.join(", "));
+        for used in defaults.filter(|used| used.key == "outer_race.foundation") {
+            used.reason = format!("the moving outer race is held by spring {}", names.join(", "));
         }
     }
 }
@@ -127,7 +127,7 @@ fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), Scen
 }
 
 /// Refuses names without a table, names used twice, and tables without a name.
-fn refuse_strange_names(document: &Document) -> Result<(), SceneError> {
+fn refuse_invalid_names(document: &Document) -> Result<(), SceneError> {
     for table in ["body", "spring"] {
         if document.names(table).next().is_none() && document.first_below(table).is_some() {
             let reason = format!("a {table} has a name");
@@ -171,7 +171,7 @@ fn bearing(
     document: &Document,
     name: Option<&str>,
     bodies: &[&str],
-    told: &mut Vec<DefaultUsed>,
+    shared: &mut Vec<DefaultUsed>,
 ) -> Result<PlacedBearing, SceneError> {
     let mut scoped = match name {
         Some(name) => document.scoped(name),
@@ -235,7 +235,7 @@ fn bearing(
     for (race, _) in OWN_RACES.iter().zip(on).filter(|(_, body)| body.is_some()) {
         forget_race(&mut scene, race);
     }
-    name_defaults(&mut scene, &scoped, name, told);
+    name_defaults(&mut scene, &scoped, name, shared);
     Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene, housing })
 }
 
@@ -311,7 +311,7 @@ fn name_defaults(
     scene: &mut Scene,
     scoped: &Document,
     name: Option<&str>,
-    told: &mut Vec<DefaultUsed>,
+    shared: &mut Vec<DefaultUsed>,
 ) {
     if name.is_none() {
         return;
@@ -323,8 +323,8 @@ fn name_defaults(
         for used in list.iter_mut().filter(|used| of_bearing(&used.key)) {
             used.key = scoped.shown(&used.key, true);
         }
-        list.retain(|used| !told.contains(used));
-        told.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());
+        list.retain(|used| !shared.contains(used));
+        shared.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());
     }
 }
 

@@ -6,7 +6,7 @@ use crate::mesh::generate::{Bushing, BushingMesh, Part, bushing as mesh_of};
 use crate::scene::build::assembly::{BushingInElements, BushingOfSpring, BushingStepping};
 use crate::scene::error::SceneError;
 use crate::scene::resolve::bearing::Reader;
-use crate::scene::resolve::contact::refuse_strangers;
+use crate::scene::resolve::contact::refuse_without_effect_on;
 use crate::scene::resolve::rubber::rubber;
 use crate::solids::rubber::prony::{BushingSpring, bushing_spring};
 use std::f64::consts::TAU;
@@ -80,7 +80,7 @@ pub(crate) fn bushing(
     })?;
     of.misses = spring.misses;
     let method = reader.choice("spring.bushing.method").unwrap_or("reduced");
-    refuse_strangers(reader, ("method", method), OF_METHODS)?;
+    refuse_without_effect_on(reader, ("method", method), OF_METHODS)?;
     let stepping = match method {
         "explicit" => {
             let fraction = reader.number("spring.bushing.step_fraction").unwrap_or(0.8);
@@ -93,8 +93,8 @@ pub(crate) fn bushing(
     };
     of.elements = stepping.map(|stepping| {
         let density = reader.number("spring.bushing.density").unwrap_or(1100.0);
-        let window_phase = reader.number("spring.bushing.window_phase").unwrap_or(0.2);
-        BushingInElements { density, stepping, window_phase }
+        let coupling_phase = reader.number("spring.bushing.coupling_phase").unwrap_or(0.2);
+        BushingInElements { density, stepping, coupling_phase }
     });
     Ok(Some((of, spring.law)))
 }
@@ -114,7 +114,7 @@ fn usual_cells(thickness: f64, length: f64) -> [usize; 2] {
 /// Keys of some methods, and these methods.
 const OF_METHODS: &[(&str, &[&str])] = &[
     ("spring.bushing.density", &["explicit", "implicit"]),
-    ("spring.bushing.window_phase", &["explicit", "implicit"]),
+    ("spring.bushing.coupling_phase", &["explicit", "implicit"]),
     ("spring.bushing.step_fraction", &["explicit"]),
     ("spring.bushing.step", &["implicit"]),
 ];

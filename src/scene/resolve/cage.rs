@@ -68,13 +68,13 @@ pub(crate) fn cage(
         };
         return Err(reader.document.error("bearing.cage.inner_radius", problem));
     }
-    hold_against_races(reader, &cage, geometry.pitch_radius, sizes)?;
+    check_between_races(reader, &cage, geometry.pitch_radius, sizes)?;
     Ok(Some(cage))
 }
 
 /// Checks that the cage is between the races: inside the shoulders if they are given, else inside the groove bottoms; a
 /// guiding race is farther by its clearance.
-fn hold_against_races(
+fn check_between_races(
     reader: &Reader,
     cage: &Cage,
     pitch: f64,

@@ -23,7 +23,7 @@ const TRACTION_KEYS: &[(&str, &[&str])] = &[
 const DAMPING_KEYS: &[(&str, &[&str])] = &[("contact_damping.alpha", &["hunt-crossley"])];
 
 /// Refuses keys of another law or method than the chosen one.
-pub(crate) fn refuse_strangers(
+pub(crate) fn refuse_without_effect_on(
     reader: &Reader,
     (what, chosen): (&str, &str),
     keys: &[(&str, &[&str])],
@@ -45,7 +45,7 @@ pub(crate) fn refuse_strangers(
 
 pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
     let law = reader.choice("traction.law").unwrap_or("slide-to-roll");
-    refuse_strangers(reader, ("law", law), TRACTION_KEYS)?;
+    refuse_without_effect_on(reader, ("law", law), TRACTION_KEYS)?;
     let because = format!(" with `law = \"{law}\"`");
     Ok(match law {
         "constant" => TractionLaw::Constant {
@@ -111,7 +111,7 @@ fn curve(
 
 pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError> {
     let law = reader.choice("contact_damping.law").unwrap_or("none");
-    refuse_strangers(reader, ("law", law), DAMPING_KEYS)?;
+    refuse_without_effect_on(reader, ("law", law), DAMPING_KEYS)?;
     let because = format!(" with `law = \"{law}\"`");
     Ok(match law {
         "hunt-crossley" => ContactDamping::HuntCrossley {

@@ -219,13 +219,13 @@ fn settings(
     });
     let (unless_given, reason) = match friction {
         Some(_) => ("free", "friction supports the race along its axis"),
-        None => ("held", "a shoulder or ring beside the bore; the bore has no friction"),
+        None => ("fixed", "a shoulder or ring beside the bore; the bore has no friction"),
     };
     let axial = reader.choice_if_given("housing.axial").unwrap_or_else(|| {
         reader.note("housing.axial", unless_given, reason);
         unless_given
     });
-    let axial = if axial == "free" { Axial::Free } else { Axial::Held };
+    let axial = if axial == "free" { Axial::Free } else { Axial::Fixed };
     let penalty = match document.value("housing.contact.stiffness") {
         Some(Checked::Either(0, stiffness)) => Penalty::PerArea(*stiffness),
         Some(Checked::Either(_, stiffness)) => Penalty::PerNode(*stiffness),
@@ -234,10 +234,11 @@ fn settings(
             Penalty::default()
         }
     };
-    let (mut step_fraction, mut window_phase) = (0.8, 0.125);
-    for (key, value) in
-        [("housing.step_fraction", &mut step_fraction), ("housing.window_phase", &mut window_phase)]
-    {
+    let (mut step_fraction, mut coupling_phase) = (0.8, 0.125);
+    for (key, value) in [
+        ("housing.step_fraction", &mut step_fraction),
+        ("housing.coupling_phase", &mut coupling_phase),
+    ] {
         if method == HousingMethod::Explicit {
             *value = reader.number(key).unwrap_or(*value);
         } else if reader.is_given(key) {
@@ -251,8 +252,8 @@ fn settings(
         }
     }
     let [modes_to, press] =
-        ["housing.modes_to", "housing.press"].map(|key| reader.given_number(key));
-    let of_shapes = [("housing.modes_to", modes_to), ("housing.press", press)];
+        ["housing.modes_to", "housing.bore_load"].map(|key| reader.given_number(key));
+    let of_shapes = [("housing.modes_to", modes_to), ("housing.bore_load", press)];
     if let Some((key, _)) = of_shapes.into_iter().find(|(_, given)| given.is_some())
         && method != HousingMethod::Reduced
     {
@@ -275,7 +276,7 @@ fn settings(
         penalty,
         friction,
         step_fraction,
-        window_phase,
+        coupling_phase,
         modes_to,
         press,
         defaults_used: Vec::new(),
@@ -402,7 +403,7 @@ fn rest(
     let start = bearing.outer_race[0];
     let Some(DrivenBody { drives, .. }) = &mut bearing.dynamics.outer else { return Ok(()) };
     let mut said = vec!["outer_race.foundation"];
-    if housing.axial == Axial::Held
+    if housing.axial == Axial::Fixed
         && let Drive::Load(load) = &drives[0]
     {
         if !load.is_zero() && housing.method != HousingMethod::QuasiStatic {

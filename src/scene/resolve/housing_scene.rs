@@ -45,7 +45,7 @@ pub struct HousingSettings {
     pub friction: Option<BoreFriction>,
     /// Steps of the housing over their limit, and phase of the race in a coupling step.
     pub step_fraction: f64,
-    pub window_phase: f64,
+    pub coupling_phase: f64,
     /// Highest natural frequency of a reduced housing, Hz; `None`: from the frequencies of the bearing.
     pub modes_to: Option<f64>,
     /// Force on the race in its bore for the correction modes, N; `None`: the largest load.

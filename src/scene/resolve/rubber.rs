@@ -31,7 +31,7 @@ const OF_RUBBER: [&str; 8] = [
     "solid.material.rubber_modulus",
     "solid.material.table",
     "solid.material.chain",
-    "solid.material.chain_pull",
+    "solid.material.chain_force",
     "solid.material.bulk_ratio",
     "solid.material.bulk_modulus",
     "solid.material.maxwell",
@@ -92,7 +92,7 @@ pub(crate) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
         }
     }
     let table = reader.choice_if_given("solid.material.table");
-    let pull = match reader.choice("solid.material.chain_pull") {
+    let pull = match reader.choice("solid.material.chain_force") {
         Some("inverse-langevin") => ChainPull::Exact,
         _ => ChainPull::FiveTerms,
     };

@@ -39,7 +39,7 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     let [youngs_modulus, poisson_ratio, density] =
         ["youngs_modulus", "poisson_ratio", "density"].map(&mut number);
     let [below, damping, internal_damping] =
-        ["below", "damping", "internal_damping"].map(&mut number);
+        ["modes_to", "damping", "internal_damping"].map(&mut number);
     let absolute = reader.choice("body.beam.damped_motion") == Some("absolute");
     let segment = |item: ItemRef| {
         let size = |name, example| required(item, name, example);
@@ -125,7 +125,7 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
             .items("body.beam.unbalance")
             .map(unbalance)
             .collect::<Result<_, _>>()?,
-        watched: document
+        probes: document
             .items("body.beam.probe")
             .map(&mut watch)
             .collect::<Result<_, SceneError>>()?,
@@ -227,7 +227,7 @@ fn in_elements(reader: &mut Reader) -> Result<Option<RaceJoint>, SceneError> {
     }
     for (key, reason, advice) in [
         (
-            "body.beam.below",
+            "body.beam.modes_to",
             "elements in explicit steps have all of their frequencies",
             "leave it out",
         ),

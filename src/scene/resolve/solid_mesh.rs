@@ -160,7 +160,7 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
         _ => None,
     };
     let generator = reader.choice_if_given("solid.mesh.generate");
-    refuse_strangers(reader, generator)?;
+    refuse_without_effect_on(reader, generator)?;
     match (file, generator) {
         (Some(file), _) => {
             let unit = match reader.choice_if_given("solid.mesh.unit") {
@@ -206,7 +206,7 @@ pub(crate) fn extension(file: &str) -> String {
 }
 
 /// Refuses dimensions without effect on the chosen source.
-fn refuse_strangers(reader: &Reader, generator: Option<&str>) -> Result<(), SceneError> {
+fn refuse_without_effect_on(reader: &Reader, generator: Option<&str>) -> Result<(), SceneError> {
     let own = KEYS_OF.iter().find(|(name, _)| Some(*name) == generator).map(|(_, keys)| *keys);
     for key in reader.document.given_keys() {
         let Some(name) = key.path.strip_prefix("solid.mesh.") else { continue };

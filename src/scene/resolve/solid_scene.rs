@@ -169,13 +169,13 @@ pub enum RunSteps {
     Explicit {
         method: ExplicitMethod,
         stepping: SolidStepping,
-        /// Energy unaccounted for over energy turned over at which the run is stopped.
+        /// Largest energy residual over the energy turned over.
         energy_limit: f64,
     },
     Implicit(Stepping),
 }
 
-/// What a solid is made of.
+/// Material of a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// Young's modulus in Pa.
@@ -186,16 +186,16 @@ pub enum Law {
     Elastomer(Box<RubberScene>),
 }
 
-/// A rubber, and what only a solid of rubber is asked.
+/// A rubber, and outputs of solids of rubber only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RubberScene {
     pub material: Elastomer,
-    /// The table of the source that it is named by.
+    /// Table of the source with this rubber.
     pub table: Option<&'static str>,
     pub harmonic: Option<Harmonic>,
 }
 
-/// Small vibrations that are asked for: of a set along an axis (0, 1 or 2), all other held sets at rest.
+/// Small vibrations: of a set along an axis (0, 1 or 2), with all other supports at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harmonic {
     pub set: String,
@@ -228,9 +228,9 @@ pub struct SolidScene {
     pub probes: Vec<Probe>,
     pub mode_count: usize,
     pub mode_mass: MassMatrix,
-    /// `None` where the scene gives no end.
+    /// `None` if the scene gives no end.
     pub run: Option<SolidRun>,
-    /// Whether series and spectra are drawn.
+    /// True if series and spectra are drawn.
     pub draw_series: bool,
     pub draw_spectrum: bool,
 }

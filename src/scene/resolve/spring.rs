@@ -1,4 +1,4 @@
-//! From the keys of a spring to what it joins, where, and how stiff it is.
+//! From the keys of a spring to its ends and its law.
 
 use crate::members::connection::MaxwellElement;
 use crate::scene::build::assembly::{
@@ -43,7 +43,7 @@ pub(crate) fn spring(
         let advice = "a spring joins two bodies, or a body and the ground";
         return Err(scoped.refused("spring.to", reason, advice));
     }
-    // Both ends at one place; that of a race, where one end is at a race.
+    // Both ends at one position; at that of a race if one end is a race.
     let [from_x, to_x] = [from, to].map(|at| race_at(bearings, at));
     let along = match from {
         SpringAt::Race { .. } => reader.number("spring.from_at").unwrap_or(0.0),
@@ -100,11 +100,11 @@ fn race(
     let placed = &bearings[bearing];
     if let Carrier::Body { index, .. } = placed.carriers[side] {
         let advice = format!("write {:?}", bodies[index]);
-        return Err(refused(&format!("this race sits on body.{}", bodies[index]), &advice));
+        return Err(refused(&format!("this race is on body.{}", bodies[index]), &advice));
     }
     if side == 1 && placed.housing.is_some() {
         let advice = "join the spring to a body, or leave the housing out";
-        return Err(refused("the outer race sits in the bore of its housing", advice));
+        return Err(refused("the outer race is in the bore of its housing", advice));
     }
     if side == 1 && placed.scene.dynamics.outer.is_none() {
         let advice = "write `motion = \"5-dof\"` in [outer_race]";
@@ -113,7 +113,7 @@ fn race(
     Ok(SpringAt::Race { bearing, side })
 }
 
-/// What a spring may begin or end at instead.
+/// Refuses an end that does not exist, with the valid ones.
 fn no_such_end(name: &str, bodies: &[&str], bearings: &[PlacedBearing]) -> Problem {
     let mut known: Vec<String> = bodies.iter().map(|body| body.to_string()).collect();
     for placed in bearings {
@@ -128,9 +128,9 @@ fn no_such_end(name: &str, bodies: &[&str], bearings: &[PlacedBearing]) -> Probl
     known.push(GROUND.into());
     let advice = match nearest(name, known.iter().map(String::as_str), 0.5) {
         Some(nearest) => format!("did you mean {nearest}?"),
-        None => "write one of them; a race is named where it moves by itself".into(),
+        None => "write one of them; a race is named if it moves by itself".into(),
     };
-    let reason = format!("a spring does not end at {name:?}, it may at: {}", known.join(", "));
+    let reason = format!("{name:?} is no end of a spring; ends are: {}", known.join(", "));
     Problem::refused(reason, advice)
 }
 

@@ -9,7 +9,7 @@ use Need::{Default, Depends, Optional};
 
 pub const METHODS: &[&str] = &["quasi-static", "explicit", "reduced", "rigid"];
 pub const STARTS: &[&str] = &["undeformed", "equilibrium"];
-pub const AXIAL: &[&str] = &["held", "free"];
+pub const AXIAL: &[&str] = &["fixed", "free"];
 pub const FRICTION_LAWS: &[&str] = &["none", "stick-slip"];
 
 const FIT: Kind = Kind::Quantity(Length, closed(-10_000.0, 10_000.0, "um"));
@@ -36,8 +36,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("housing.start", Kind::Choice(STARTS), Default { value: "undeformed", reason: "as the source's explicit runs" },
         "Initial state for `explicit`: an undeformed housing in which the fit grows, or the equilibrium of all parts under the loads at t = 0, computed with the condensed housing."),
     Key::new("housing.width", RADIUS, Depends("`bearing.length`; without it the length of the bore"), "Width of the outer race in the bore. Only nodes under the race are contact nodes.").hint("a positive width, along the axis; check the unit").example_of("20 mm"),
-    Key::new("housing.axial", Kind::Choice(AXIAL), Depends("`held`; with friction `free`"),
-        "Axial support of the outer race: `held` by a shoulder or ring, or `free` except for friction in the bore."),
+    Key::new("housing.axial", Kind::Choice(AXIAL), Depends("`fixed`; with friction `free`"),
+        "Axial support of the outer race: `fixed` by a shoulder or ring, or `free` except for friction in the bore."),
     Key::new("housing.contact.stiffness", CONTACT_STIFFNESS, Default { value: "2.5e14 N/m^3", reason: "the source's 2.5e8 N/m at nodes of 1 mm^2" },
         "Penalty stiffness (2.19): per area (N/m^3), so that the pressure does not depend on the mesh, or per node (N/m), as in the source.").hint("the source has 2.5e8 N/m per node for steel").example_of("\"2.5e14 N/m^3\""),
     Key::new("housing.friction.law", Kind::Choice(FRICTION_LAWS), Depends("`none`: a frictionless bore"),
@@ -48,11 +48,11 @@ pub(crate) const KEYS: &[Key] = &[
         "Tangential displacement at which a contact node slips with `stick-slip`; below it the friction force grows linearly. The tangential spring is never stiffer than the normal contact, so nodes with more penetration slip at a larger displacement.").hint("a fraction of a micrometre; a smaller value gives a stiffer tangential contact").example_of("0.1 nm"),
     Key::new("housing.modes_to", Kind::Quantity(Frequency, above(0.0, 1e9, "Hz")), Depends("twice the natural frequency of a ball between its races under the largest load on bodies, without loads of `body.NAME.beam`"),
         "Highest natural frequency of the housing modes that `reduced` keeps. Stiffer motion is represented by static correction modes.").example_of("40 kHz"),
-    Key::new("housing.press", Kind::Quantity(Force, above(0.0, 1e12, "N")), Depends("the largest radial load on all bodies at any time, including flexible shafts and unbalances at prescribed speeds"),
+    Key::new("housing.bore_load", Kind::Quantity(Force, above(0.0, 1e12, "N")), Depends("the largest radial load on all bodies at any time, including flexible shafts and unbalances at prescribed speeds"),
         "Radial force of the outer race on the bore for which `reduced` computes static correction modes: in directions all around, centred and off-centre, in addition to the load at t = 0. Set it if `run` warns of a larger force.").example_of("5 kN"),
     Key::new("housing.step_fraction", Kind::Number(above(0.0, 1.0, "")), Default { value: "0.8", reason: "below the stability limit of the housing in contact" },
         "Time step of the housing for `explicit`, divided by its stability limit.").example_of("0.8"),
-    Key::new("housing.window_phase", Kind::Number(above(0.0, 1.9, "")), Default { value: "0.125", reason: "energy error 1e-4 of the energy of an impact through clearance" },
+    Key::new("housing.coupling_phase", Kind::Number(above(0.0, 1.9, "")), Default { value: "0.125", reason: "energy error 1e-4 of the energy of an impact through clearance" },
         "Length of a coupling step for `explicit`: phase, in rad, of the outer race's oscillation on the bore contact. Stable below 2; the energy error grows with its square.").example_of("0.25"),
 ];
 

@@ -79,7 +79,7 @@ pub(crate) const KEYS: &[Key] = &[
         "Modulus C_R of the network; at N = 8 the shear modulus is 1.085 C_R.").hint("the source has 0.324 and 0.647 MPa; check the unit").example_of("0.647 MPa"),
     Key::new("solid.material.chain", Kind::Number(above(1.0, 1e6, "")), Depends("8, with `law = \"elastomer\"`"),
         "Number N of links in a chain; a chain is fully extended at a stretch of √N.").hint("the source has 8; at 1, chains are fully extended in the undeformed rubber").example_of("8"),
-    Key::new("solid.material.chain_pull", Kind::Choice(CHAIN_FORCES), Default { value: "five-terms", reason: "as (2.8)" },
+    Key::new("solid.material.chain_force", Kind::Choice(CHAIN_FORCES), Default { value: "five-terms", reason: "as (2.8)" },
         "Force of a chain over its stretch: the five terms of the source, or the inverse Langevin function that they approximate, which is undefined beyond full extension."),
     Key::new("solid.material.bulk_ratio", Kind::Number(closed(1.0, 1e6, "")), Depends("100, with `law = \"elastomer\"`"),
         "Bulk modulus divided by C_R.").group("bulk").hint("the source has 100; many rubbers have 1000").example_of("100"),

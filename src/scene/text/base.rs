@@ -142,7 +142,7 @@ impl Document {
             };
             let given = given.as_ref().and_then(|given| given.offset);
             let Some(offset) = given.or_else(in_list) else { continue };
-            let (names, nothing) = self.out_of_reach(key.path);
+            let (names, nothing) = self.outside_range(key.path);
             if nothing {
                 let path = if given.is_some() { key.path } else { key.table() };
                 let (table, rest) = path.split_once('.').unwrap_or((path, ""));

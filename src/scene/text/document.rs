@@ -304,7 +304,7 @@ impl Document {
 
     /// Names whose own tables override a key without a name, and whether all do, so that the key has no effect. Empty and
     /// false for a key with a name.
-    pub fn out_of_reach(&self, path: &str) -> (Vec<String>, bool) {
+    pub fn outside_range(&self, path: &str) -> (Vec<String>, bool) {
         let Some(Leads { row, key, name: None, .. }) = keys::find_named(path) else {
             return (Vec::new(), false);
         };

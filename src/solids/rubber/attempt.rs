@@ -2,7 +2,7 @@
 
 use crate::assembly::plan::Stage;
 use crate::ch2_housing::elastomer::maxwell::{
-    beyond_small_strain, carried, commit, curvature_error, summed,
+    beyond_small_strain, commit, curvature_error, relaxed_history, summed,
 };
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
@@ -63,7 +63,7 @@ impl RubberSolid<'_> {
     /// Finds the equilibrium at the end of a step without any other change. A step that ends at a jump ends before it.
     pub(crate) fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), Stop> {
         let end = if step > 0.0 { end.next_down() } else { end };
-        self.carry(step)?;
+        self.set_history(step)?;
         let at = Moment::at(end);
         let inertia = self.newmark_predictor(step);
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia };
@@ -85,7 +85,7 @@ impl RubberSolid<'_> {
     }
 
     /// Sets the part of the stress that depends on the state before a step of `step` s.
-    pub(crate) fn carry(&mut self, step: f64) -> Result<(), RubberError> {
+    pub(crate) fn set_history(&mut self, step: f64) -> Result<(), RubberError> {
         let maxwell = &self.search.model.problem.material.maxwell;
         self.factors.set(maxwell, step)?;
         if !maxwell.is_empty() {
@@ -93,7 +93,7 @@ impl RubberSolid<'_> {
             for ((to, history), before) in
                 self.carried.iter_mut().zip(terms).zip(&self.state.deviatoric)
             {
-                *to = carried(history, before, &self.factors);
+                *to = relaxed_history(history, before, &self.factors);
             }
         }
         Ok(())
@@ -187,7 +187,7 @@ impl RubberSolid<'_> {
     pub(crate) fn restore_forces(&mut self) {
         self.search.displacement.copy_from_slice(&self.state.displacement);
         // A zero step is never refused.
-        let _ = self.carry(0.0);
+        let _ = self.set_history(0.0);
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
         self.search.return_to(Moment::at(self.state.time), &law);
     }

@@ -1,7 +1,7 @@
 //! A bar or cube of rubber under homogeneous tension or compression, free at its sides: one material point.
 
 use crate::ch2_housing::elastomer::Elastomer;
-use crate::ch2_housing::elastomer::maxwell::{StepFactors, carried, commit};
+use crate::ch2_housing::elastomer::maxwell::{StepFactors, commit, relaxed_history};
 use crate::kinematics::strain::Sym3;
 use crate::solids::rubber::error::{RubberError, StepFailure};
 
@@ -57,7 +57,7 @@ impl<'a> Bar<'a> {
         let mut lateral = (1.0 + self.lateral) * kept.sqrt() - 1.0;
         let network = &self.material.network;
         let gain = self.factors.total_gain;
-        let past = carried(&self.history, &self.deviatoric, &self.factors);
+        let past = relaxed_history(&self.history, &self.deviatoric, &self.factors);
         let scale = network.bulk + (1.0 + gain) * network.shear_modulus();
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {

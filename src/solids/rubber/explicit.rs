@@ -126,13 +126,13 @@ impl ExplicitSolid {
     }
 
     /// Rubber at rest with given displacements (m), in `fraction` of the longest step; its prescribed nodes move with
-    /// bodies ([`ExplicitSolid::carry`]), which have their mass. Dissipation is counted.
+    /// bodies ([`ExplicitSolid::drive_nodes`]), which have their mass. Dissipation is counted.
     ///
     /// # Errors
     ///
     /// Those of [`RubberBody::model`].
     /// As [`RubberBody::model`].
-    pub fn of_carried_rubber(
+    pub fn of_driven_rubber(
         body: &RubberBody,
         fraction: f64,
         displacement: Vec<Vec3>,
@@ -153,7 +153,7 @@ impl ExplicitSolid {
     }
 
     /// Sets nodes of bodies to their present displacement and rate: node, displacement (m), rate (m/s).
-    pub fn carry(&mut self, nodes: impl Iterator<Item = (u32, Vec3, Vec3)>) {
+    pub fn drive_nodes(&mut self, nodes: impl Iterator<Item = (u32, Vec3, Vec3)>) {
         for (node, displacement, rate) in nodes {
             self.displacement[node as usize][..3].copy_from_slice(&displacement);
             self.rate[node as usize][..3].copy_from_slice(&rate);

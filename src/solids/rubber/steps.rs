@@ -270,7 +270,7 @@ impl<'a> RubberSolid<'a> {
     /// Equilibrium at a fraction of a jump, from the one before. Nothing relaxes meanwhile, so that the path is
     /// irrelevant.
     fn sudden_part(&mut self, at: Moment, from: &[Vec3]) -> Result<(), Stop> {
-        self.carry(0.0)?;
+        self.set_history(0.0)?;
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
         self.search.displacement.copy_from_slice(from);
         self.search.predict(at, &law)?;

@@ -34,7 +34,7 @@ pub enum History {
     /// Advances them to the present state and stores them: once in an accepted step.
     Commit,
     /// Advances them without storing.
-    Look,
+    Trial,
     /// Omits them; the deviatoric stress is that of the network times a factor.
     Scaled(f64),
 }
@@ -337,7 +337,7 @@ impl RubberForces {
                     }
                     _ => remember(memory, own, &self.factors),
                 },
-                History::Look => foresee(memory, own, &self.factors),
+                History::Trial => foresee(memory, own, &self.factors),
                 History::Scaled(factor) => scaled(own, factor),
             };
             let mean = if around {

@@ -78,7 +78,7 @@ impl Recorder {
                     }
                 }
                 for (index, shaft) in system.assembly.shafts.iter().enumerate() {
-                    for (_, section) in &shaft.watched {
+                    for (_, section) in &shaft.probes {
                         let [_, y, z] =
                             system.section_now(&simulation.state, index, section).motion.position;
                         self.values.extend([y, z]);
@@ -88,7 +88,8 @@ impl Recorder {
             if group == ChannelGroup::Forces {
                 for index in 0..system.connections.len() {
                     if system.assembly.connections[index].label.is_some() {
-                        let Wrench { force, moment } = system.pull(&simulation.state, index).on[1];
+                        let Wrench { force, moment } =
+                            system.connection_forces(&simulation.state, index).on[1];
                         self.values.extend(force.into_iter().chain(moment));
                     }
                 }
@@ -308,7 +309,7 @@ fn add_columns(
             let own = RACE_COLUMNS.map(|(name, unit)| Column::new(format!("{label}_{name}"), unit));
             columns.extend(own);
         }
-        columns.extend(watched_columns(assembly));
+        columns.extend(probe_columns(assembly));
     }
     if group == ChannelGroup::Forces {
         let labels = assembly.connections.iter().filter_map(|joint| joint.label.as_ref());
@@ -316,12 +317,12 @@ fn add_columns(
     }
 }
 
-/// Columns of the watched sections of flexible shafts.
-pub(super) fn watched_columns(assembly: &Assembly) -> Vec<Column> {
+/// Columns of the probes of flexible shafts.
+pub(super) fn probe_columns(assembly: &Assembly) -> Vec<Column> {
     let of_shaft = |shaft: &ElasticShaft| {
         let label = assembly.bodies[shaft.body].label.as_deref().unwrap_or("shaft");
         let of = |name: &str, axis| Column::new(format!("{label}_{name}_{axis}"), "m");
-        let names = shaft.watched.iter();
+        let names = shaft.probes.iter();
         names.flat_map(|(name, _)| [of(name, "y"), of(name, "z")]).collect::<Vec<_>>()
     };
     assembly.shafts.iter().flat_map(of_shaft).collect()

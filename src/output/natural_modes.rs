@@ -39,7 +39,7 @@ pub fn names(
         names.extend((1..=stretches).map(|k| format!("{body}_stretch_{k}")));
     }
     for (before, count) in housings {
-        names.extend((1..=*count).map(|k| format!("{before}housing_shape_{k}")));
+        names.extend((1..=*count).map(|k| format!("{before}housing_mode_{k}")));
     }
     names
 }
