@@ -3,7 +3,7 @@
 use super::{pictures, print};
 use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::fields;
-use bearing_dynamics::output::folder::{FolderContent, ResultsFolder, claim, holds};
+use bearing_dynamics::output::folder::{FolderContent, ResultsFolder, claim, content};
 use bearing_dynamics::output::json;
 use bearing_dynamics::output::state::arrays::remove_arrays;
 use std::error::Error;
@@ -37,7 +37,7 @@ pub fn claimed(path: &Path, writes: Writes) -> Result<ResultsFolder, Box<dyn Err
 
 /// Returns an error if the folder holds results of another command, or files of another program.
 fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
-    let found = match (holds(folder)?, writes) {
+    let found = match (content(folder)?, writes) {
         (FolderContent::Nothing, _)
         | (FolderContent::Run, Writes::Run { .. })
         | (FolderContent::Sweep, Writes::Sweep)

@@ -329,8 +329,8 @@ fn housing(housing: &HousingSettings) -> Result<Value, ResultsError> {
     if let Some(modes_to) = housing.modes_to {
         echo.insert("modes_to".into(), quantity("modes_to", modes_to, "Hz")?);
     }
-    if let Some(press) = housing.bore_load {
-        echo.insert("press".into(), quantity("press", press, "N")?);
+    if let Some(bore_load) = housing.bore_load {
+        echo.insert("bore_load".into(), quantity("bore_load", bore_load, "N")?);
     }
     Ok(Value::Object(echo))
 }

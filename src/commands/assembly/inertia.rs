@@ -2,7 +2,7 @@
 
 use super::Fallible;
 use super::housing::Housing;
-use super::modes::natural_modes;
+use super::modes::housing_modes;
 use bearing_dynamics::equilibrium::quasi_static_sequence::{EquilibriumAt, QuasiStaticProblem};
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::numeric::clock::to_digits;
@@ -44,7 +44,7 @@ impl FrequencyRatio {
         for ((bore, seat), housing) in search.bores().iter().zip(&problem.seats).zip(housings) {
             let body = seat.body(&problem.assembly);
             let Some(race) = bodies.iter().position(|of| of.body == body) else { continue };
-            let (natural, _) = natural_modes(housing, bore.bore(), NATURAL)?;
+            let (natural, _) = housing_modes(housing, bore.bore(), NATURAL)?;
             masses.push(vibrating_housing(bore, race, &natural, seat.damping));
         }
         let lowest = lowest_frequency(&found.solution.with_shapes, &bodies, &masses);

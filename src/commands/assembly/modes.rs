@@ -58,7 +58,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
         for ((seat, bore), housing) in seats {
             let race = bodies.iter().position(|of| of.body == seat.body(assembly));
             let Some(race) = race else { continue };
-            let (natural, beyond) = natural_modes(housing, bore.bore(), NATURAL)?;
+            let (natural, beyond) = housing_modes(housing, bore.bore(), NATURAL)?;
             first_left_out = first_left_out.min(beyond);
             let before = housing.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
             let mass = vibrating_housing(bore, race, &natural, seat.damping);
@@ -129,7 +129,7 @@ const NATURAL: usize = 12;
 
 /// Natural modes kept for a housing (the lowest `usual` ones without a limit in the scene), and the frequency of the
 /// first one left out, Hz.
-pub(super) fn natural_modes(
+pub(super) fn housing_modes(
     housing: &Housing,
     bore: &CondensedBore,
     usual: usize,

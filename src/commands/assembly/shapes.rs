@@ -172,7 +172,7 @@ impl Shapes {
         let needed = found[0].max(found[1] / housing.setup.width);
         let [force, moment, needed] = [found[0], found[1], needed].map(|of| to_digits(of, 4));
         let text = format!(
-            "the load on the bore reaches {force} N and {moment} N m, beyond what its static correction modes cover ({}): write press = \
+            "the load on the bore reaches {force} N and {moment} N m, beyond what its static correction modes cover ({}): write bore_load = \
              \"{needed} N\", or more, in [housing]",
             self.made_for(index)
         );

@@ -251,9 +251,9 @@ fn settings(
             );
         }
     }
-    let [modes_to, press] =
+    let [modes_to, bore_load] =
         ["housing.modes_to", "housing.bore_load"].map(|key| reader.given_number(key));
-    let of_shapes = [("housing.modes_to", modes_to), ("housing.bore_load", press)];
+    let of_shapes = [("housing.modes_to", modes_to), ("housing.bore_load", bore_load)];
     if let Some((key, _)) = of_shapes.into_iter().find(|(_, given)| given.is_some())
         && method != HousingMethod::Reduced
     {
@@ -278,7 +278,7 @@ fn settings(
         step_fraction,
         coupling_phase,
         modes_to,
-        press,
+        bore_load,
         defaults_used: Vec::new(),
     })
 }

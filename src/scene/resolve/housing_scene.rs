@@ -49,7 +49,7 @@ pub struct HousingSettings {
     /// Highest natural frequency of a reduced housing, Hz; `None`: from the frequencies of the bearing.
     pub modes_to: Option<f64>,
     /// Force on the race in its bore for the correction modes, N; `None`: the largest load.
-    pub press: Option<f64>,
+    pub bore_load: Option<f64>,
     pub defaults_used: Vec<DefaultUsed>,
 }
 
