@@ -1,28 +1,28 @@
-//! A section of a rotor of finite elements as what sits on it feels it (4.2.3): how far its nodes move and turn in the mean, and
-//! the same mean by which forces and moments on it come to its nodes; of small displacements, and of a rotor that spins.
+//! Cross-section of a finite-element rotor (4.2.3): mean displacement and rotation of its nodes, and the consistent
+//! distribution of forces and moments to them; for small displacements and for a spinning rotor.
 
 use crate::kinematics::strain::{Mat3, times};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-/// Spread of nodes about an axis below this part of that about another is rounding.
+/// Ratio of the nodes' spread about two axes below which they are on one line.
 const ON_A_LINE: f64 = 1e-9;
 
-/// Nodes in one plane across the rotor, and what part of its area each carries.
+/// Nodes in one plane across the rotor, with their area weights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RotorSection {
-    /// Of its area, undeformed, m.
+    /// Centroid of the undeformed section, m.
     pub centre: Vec3,
     /// m².
     pub area: f64,
-    /// Node, its part of the area (all: 1), and where it is from the centre, m.
+    /// Node number, area weight (sum 1), undeformed position from the centre, m.
     nodes: Vec<(u32, f64, Vec3)>,
-    /// Σ part (r² − r rᵀ), inverted, 1/m².
+    /// Inverse of Σ weight (r² − r rᵀ), 1/m².
     spread: Mat3,
 }
 
 impl RotorSection {
-    /// Of nodes, their places (m) and areas (m²); none of nodes on one line.
+    /// Section from nodes, their positions (m) and areas (m²); `None` if the nodes are on one line.
     pub fn new(nodes: &[(u32, Vec3, f64)]) -> Option<RotorSection> {
         let area: f64 = nodes.iter().map(|(_, _, area)| area).sum();
         let mut centre = [0.0; 3];
@@ -41,7 +41,7 @@ impl RotorSection {
             }
         }
         let sum = nalgebra::Matrix3::from_fn(|i, j| sum[i][j]);
-        // About the line that nodes are on nothing turns them.
+        // Nodes on one line have no rotation about it.
         let about = sum.symmetric_eigenvalues();
         let spread = sum.try_inverse()?;
         let is_sound = area > 0.0 && about.min() > ON_A_LINE * about.max();
@@ -49,8 +49,8 @@ impl RotorSection {
         is_sound.then_some(RotorSection { centre, area, nodes, spread })
     }
 
-    /// Mean displacement (m) and rotation (rad): the small one that fits the displacements of the nodes best, by least squares
-    /// weighted by area.
+    /// Mean displacement (m) and rotation (rad): the small rotation that best fits the displacements of the nodes, by
+    /// least squares weighted by area.
     pub fn motion(&self, displacement: impl Fn(u32) -> Vec3) -> [Vec3; 2] {
         let (mut mean, mut swept) = ([0.0; 3], [0.0; 3]);
         for (node, part, arm) in &self.nodes {
@@ -61,7 +61,7 @@ impl RotorSection {
         [mean, times(&self.spread, swept)]
     }
 
-    /// Forces on the nodes (N) that do the work of a force (N) and a moment (N·m) on [`RotorSection::motion`].
+    /// Forces on the nodes (N) that do the same work as a force (N) and a moment (N·m) on [`RotorSection::motion`].
     pub fn forces(&self, force: Vec3, moment: Vec3) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let couple = times(&self.spread, moment);
         self.nodes
@@ -70,26 +70,27 @@ impl RotorSection {
     }
 }
 
-/// A section of a rotor that has moved and turned any way.
+/// Position and velocity of a rotor section after any displacement and rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionPlace {
-    /// Of its area, m.
+    /// Centroid, m.
     pub centre: Vec3,
-    /// From the undeformed section to this one: the rotation that fits best, by least squares weighted by area.
+    /// Rotation from the undeformed section to this one: the best fit by least squares weighted by area.
     pub orientation: UnitQuaternion<f64>,
     /// m/s.
     pub velocity: Vec3,
-    /// Rate of the orientation, rad/s, inertial axes.
+    /// Angular velocity, rad/s, inertial axes.
     pub spin: Vec3,
-    /// From a moment on the section to the vector whose product with an arm is a force for its part of the area, 1/m².
+    /// Maps a moment on the section to a vector c, 1/m²; c × arm, times the weight, is the nodal force.
     couple: Mat3,
 }
 
 impl RotorSection {
-    /// Where the nodes are (displacements, m) and how fast they move (m/s).
+    /// Position and velocity of the section from displacements (m) and velocities (m/s) of its nodes.
     ///
-    /// The rotation R makes Σ part (R x) × y vanish, x and y the arms of a node undeformed and now; how fast it turns follows from
-    /// the same sum: S ω = Σ part (R x) × ẏ with S = tr A − A, A = Σ part y (R x)ᵀ, which is symmetric there.
+    /// The rotation R satisfies Σ weight (R x) × y = 0 with the undeformed and current arms x and y of a node. Its
+    /// angular velocity follows from the same sum: S ω = Σ weight (R x) × ẏ with S = tr A − A, A = Σ weight y (R x)ᵀ,
+    /// which is symmetric for this R.
     pub fn place(
         &self,
         displacement: impl Fn(u32) -> Vec3,
@@ -100,7 +101,7 @@ impl RotorSection {
             mean = add_scaled(mean, *part, displacement(*node));
             velocity = add_scaled(velocity, *part, rate(*node));
         }
-        // Σ part y xᵀ and, of the undeformed section, Σ part x xᵀ.
+        // Σ weight y xᵀ and, for the undeformed section, Σ weight x xᵀ.
         let (mut moved, mut plane) = (Matrix3::zeros(), Matrix3::zeros());
         for (node, part, arm) in &self.nodes {
             let x = Vector3::from(*arm);
@@ -127,7 +128,8 @@ impl RotorSection {
         }
     }
 
-    /// Forces on the nodes (N) of a force (N) and a moment (N·m) on the section where it is: of the same power, force and moment.
+    /// Forces on the nodes (N) with the same resultant and power as a force (N) and a moment (N·m) on the section at
+    /// `place`.
     pub fn forces_at(
         &self,
         place: &SectionPlace,
@@ -143,15 +145,15 @@ impl RotorSection {
     }
 }
 
-/// tr A − A, A made symmetric: how the sum of products answers a turn.
+/// tr A − A with A made symmetric: derivative of the sum of cross products by the rotation.
 fn stiff(along: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * along.trace() - (along + along.transpose()) * 0.5
 }
 
-/// The rotation that takes x to y best, out of Σ part y xᵀ and Σ part x xᵀ, nodes across the axis X.
+/// Best-fit rotation from x to y, from Σ weight y xᵀ and Σ weight x xᵀ, for nodes in a plane across X.
 ///
-/// Of a section that has only turned the two columns across the axis are it already; a strained one takes Newton steps, which
-/// square what is missed.
+/// For a rigidly rotated section the two columns across the axis already give it; a strained section needs Newton
+/// steps, which converge quadratically.
 fn rotation_of(moved: &Matrix3<f64>, plane: &Matrix3<f64>) -> UnitQuaternion<f64> {
     const STEPS: usize = 3;
     let [yy, yz, zz] = [plane[(1, 1)], plane[(1, 2)], plane[(2, 2)]];

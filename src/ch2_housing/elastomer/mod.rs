@@ -45,7 +45,8 @@ pub enum ElastomerError {
     )]
     Locked { stretch: f64, limit: f64 },
     #[error(
-        "the determinant of the right Cauchy-Green tensor is {0:.3e}; it must be positive: no deformation has this strain"
+        "the determinant of the right Cauchy-Green tensor is {0:.3e}; it must be positive: \
+         no deformation has this strain"
     )]
     NoDeformation(f64),
 }
