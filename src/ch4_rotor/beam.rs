@@ -118,24 +118,22 @@ impl Element {
 
     /// Bending and shear stiffness: ∫ EI s′² + κGA (w′ − s)².
     pub fn stiffness(&self) -> PlaneMatrix {
-        self.integral(|of_place| {
-            let [bending, shear] = [of_place.curvature, of_place.slope - of_place.turn];
+        self.integral(|at| {
+            let [bending, shear] = [at.curvature, at.slope - at.turn];
             bending * bending.transpose() * self.bending + shear * shear.transpose() * self.shear
         })
     }
 
     /// Translational mass matrix.
     pub fn translational_mass(&self) -> PlaneMatrix {
-        self.integral(|of_place| {
-            of_place.deflection * of_place.deflection.transpose() * self.line_mass
-        })
+        self.integral(|at| at.deflection * at.deflection.transpose() * self.line_mass)
     }
 
     /// Rotary mass matrix for section rotation about a diameter. Twice this matrix couples the two bending planes as
     /// the gyroscopic matrix per rad/s of spin, because the polar inertia of a circular section is twice the diametral
     /// one.
     pub fn rotary_mass(&self) -> PlaneMatrix {
-        self.integral(|of_place| of_place.turn * of_place.turn.transpose() * self.line_inertia)
+        self.integral(|at| at.turn * at.turn.transpose() * self.line_inertia)
     }
 
     /// Axial stiffness (N/m) and mass (kg) of a bar over the axial displacements of the nodes.
@@ -149,10 +147,10 @@ impl Element {
         matrices
     }
 
-    fn integral(&self, of: impl Fn(&Shapes) -> PlaneMatrix) -> PlaneMatrix {
+    fn integral(&self, of: impl Fn(&ShapeFunctions) -> PlaneMatrix) -> PlaneMatrix {
         let mut sum = PlaneMatrix::zeros();
         for (place, weight) in GAUSS {
-            sum += of(&Shapes::at(place, self.length)) * (weight * self.length);
+            sum += of(&ShapeFunctions::at(place, self.length)) * (weight * self.length);
         }
         sum
     }
@@ -165,7 +163,7 @@ pub fn shortening(length: f64) -> [PlaneMatrix; NODES - 1] {
     std::array::from_fn(|interval| {
         let mut sum = PlaneMatrix::zeros();
         for (place, weight) in GAUSS {
-            let slope = Shapes::at((interval as f64 + place) * part, length).slope;
+            let slope = ShapeFunctions::at((interval as f64 + place) * part, length).slope;
             sum += slope * slope.transpose() * (weight * part * length);
         }
         sum
@@ -173,15 +171,15 @@ pub fn shortening(length: f64) -> [PlaneMatrix; NODES - 1] {
 }
 
 /// Shape functions at one position: contribution of each unit coordinate.
-struct Shapes {
+struct ShapeFunctions {
     deflection: PlaneVector,
     slope: PlaneVector,
     turn: PlaneVector,
     curvature: PlaneVector,
 }
 
-impl Shapes {
-    fn at(place: f64, length: f64) -> Shapes {
+impl ShapeFunctions {
+    fn at(place: f64, length: f64) -> ShapeFunctions {
         let [shapes, slopes] = lagrange(place);
         let spread = |values: [f64; NODES], first: usize, factor: f64| {
             let mut vector = PlaneVector::zeros();
@@ -190,7 +188,7 @@ impl Shapes {
             }
             vector
         };
-        Shapes {
+        ShapeFunctions {
             deflection: spread(shapes, 0, 1.0),
             slope: spread(slopes, 0, 1.0 / length),
             turn: spread(shapes, 1, 1.0),

@@ -32,11 +32,11 @@ impl RotorSection {
         let nodes: Vec<(u32, f64, Vec3)> =
             nodes.iter().map(|(node, at, of)| (*node, of / area, sub(*at, centre))).collect();
         let mut sum = [[0.0; 3]; 3];
-        for (_, part, arm) in &nodes {
+        for (_, weight, arm) in &nodes {
             for (i, row) in sum.iter_mut().enumerate() {
                 for (j, value) in row.iter_mut().enumerate() {
                     let round = if i == j { dot(*arm, *arm) } else { 0.0 };
-                    *value += part * (round - arm[i] * arm[j]);
+                    *value += weight * (round - arm[i] * arm[j]);
                 }
             }
         }
@@ -53,10 +53,10 @@ impl RotorSection {
     /// least squares weighted by area.
     pub fn motion(&self, displacement: impl Fn(u32) -> Vec3) -> [Vec3; 2] {
         let (mut mean, mut swept) = ([0.0; 3], [0.0; 3]);
-        for (node, part, arm) in &self.nodes {
+        for (node, weight, arm) in &self.nodes {
             let of = displacement(*node);
-            mean = add_scaled(mean, *part, of);
-            swept = add_scaled(swept, *part, cross(*arm, of));
+            mean = add_scaled(mean, *weight, of);
+            swept = add_scaled(swept, *weight, cross(*arm, of));
         }
         [mean, times(&self.spread, swept)]
     }
@@ -64,9 +64,9 @@ impl RotorSection {
     /// Forces on the nodes (N) that do the same work as a force (N) and a moment (N·m) on [`RotorSection::motion`].
     pub fn forces(&self, force: Vec3, moment: Vec3) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let couple = times(&self.spread, moment);
-        self.nodes
-            .iter()
-            .map(move |(node, part, arm)| (*node, scale(add(force, cross(couple, *arm)), *part)))
+        self.nodes.iter().map(move |(node, weight, arm)| {
+            (*node, scale(add(force, cross(couple, *arm)), *weight))
+        })
     }
 }
 
@@ -97,26 +97,26 @@ impl RotorSection {
         rate: impl Fn(u32) -> Vec3,
     ) -> SectionPlace {
         let (mut mean, mut velocity) = ([0.0; 3], [0.0; 3]);
-        for (node, part, _) in &self.nodes {
-            mean = add_scaled(mean, *part, displacement(*node));
-            velocity = add_scaled(velocity, *part, rate(*node));
+        for (node, weight, _) in &self.nodes {
+            mean = add_scaled(mean, *weight, displacement(*node));
+            velocity = add_scaled(velocity, *weight, rate(*node));
         }
         // Σ weight y xᵀ and, for the undeformed section, Σ weight x xᵀ.
         let (mut moved, mut plane) = (Matrix3::zeros(), Matrix3::zeros());
-        for (node, part, arm) in &self.nodes {
+        for (node, weight, arm) in &self.nodes {
             let x = Vector3::from(*arm);
             let y = Vector3::from(add(*arm, sub(displacement(*node), mean)));
-            moved += y * x.transpose() * *part;
-            plane += x * x.transpose() * *part;
+            moved += y * x.transpose() * *weight;
+            plane += x * x.transpose() * *weight;
         }
         let orientation = rotation_of(&moved, &plane);
         let turn = orientation.to_rotation_matrix();
         let along = moved * turn.transpose();
-        let couple = stiff(&along).try_inverse().unwrap_or_else(Matrix3::zeros);
+        let couple = rotation_derivative(&along).try_inverse().unwrap_or_else(Matrix3::zeros);
         let mut swept = Vector3::zeros();
-        for (node, part, arm) in &self.nodes {
+        for (node, weight, arm) in &self.nodes {
             let arm = turn * Vector3::from(*arm);
-            swept += arm.cross(&Vector3::from(rate(*node))) * *part;
+            swept += arm.cross(&Vector3::from(rate(*node))) * *weight;
         }
         let spin: Vec3 = (couple * swept).into();
         SectionPlace {
@@ -138,15 +138,15 @@ impl RotorSection {
     ) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let turn = place.orientation.to_rotation_matrix();
         let couple = times(&place.couple, moment);
-        self.nodes.iter().map(move |(node, part, arm)| {
+        self.nodes.iter().map(move |(node, weight, arm)| {
             let arm: Vec3 = (turn * Vector3::from(*arm)).into();
-            (*node, scale(add(force, cross(couple, arm)), *part))
+            (*node, scale(add(force, cross(couple, arm)), *weight))
         })
     }
 }
 
 /// tr A − A with A made symmetric: derivative of the sum of cross products by the rotation.
-fn stiff(along: &Matrix3<f64>) -> Matrix3<f64> {
+fn rotation_derivative(along: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * along.trace() - (along + along.transpose()) * 0.5
 }
 
@@ -167,13 +167,13 @@ fn rotation_of(moved: &Matrix3<f64>, plane: &Matrix3<f64>) -> UnitQuaternion<f64
     let mut turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(columns));
     for _ in 0..STEPS {
         let along = moved * turn.to_rotation_matrix().transpose();
-        let left = Vector3::new(
+        let residual = Vector3::new(
             along[(2, 1)] - along[(1, 2)],
             along[(0, 2)] - along[(2, 0)],
             along[(1, 0)] - along[(0, 1)],
         );
-        let Some(inverse) = stiff(&along).try_inverse() else { break };
-        let by = inverse * left * 0.5;
+        let Some(inverse) = rotation_derivative(&along).try_inverse() else { break };
+        let by = inverse * residual * 0.5;
         turn = UnitQuaternion::new_normalize(Quaternion::new(1.0, by.x, by.y, by.z)) * turn;
     }
     turn
