@@ -1,7 +1,7 @@
 //! Contact of a rigid cylinder with the surface of a deformable solid, (2.16)–(2.19): the outer race in its bore, or
 //! the cylinder on a block in 2.3.2.
 //!
-//! Both cases use the same formula. A node of the solid closer to the cylinder's axis than its radius is pushed
+//! Both cases use the same formula. A node of the solid closer to the cylinder's axis than its radius is forced
 //! outwards.
 //!
 //! The cylinder has its own frame, X along its axis, and a finite width. The energy of a node is ½ K (R − d)², its

@@ -184,8 +184,8 @@ impl DentTable {
     pub fn exponent(&self, approach: f64, place: [f64; 2]) -> f64 {
         let share = self.lost(approach, place).map_or(1.0, |lost| {
             let w = approach - lost.value;
-            let held = if w > 0.0 { w / approach } else { 0.0 };
-            held * held.sqrt() * (1.0 - lost.by_approach)
+            let ratio = if w > 0.0 { w / approach } else { 0.0 };
+            ratio * ratio.sqrt() * (1.0 - lost.by_approach)
         });
         1.5 + libm::log(share) / libm::log(approach)
     }

@@ -125,7 +125,7 @@ pub fn stiffness(
         let strain_rows = point.gradients.map(|gradient| strains_by_node(&f, gradient));
         for b in 0..10 {
             let gradient = point.gradients[b];
-            let pulled = scale(times(&stress, gradient), point.volume);
+            let traction = scale(times(&stress, gradient), point.volume);
             // Stress change by the three components of node b, including volume, with shear counted twice.
             let mut by_node = [[0.0; 6]; 3];
             for j in 0..3 {
@@ -136,7 +136,7 @@ pub fn stiffness(
                 }
             }
             for a in b..10 {
-                let geometric = dot(point.gradients[a], pulled);
+                let geometric = dot(point.gradients[a], traction);
                 // Second derivative of J: ε along F(∇Nₐ × ∇N_b).
                 let turned = scale(
                     times(&f, cross(point.gradients[a], gradient)),

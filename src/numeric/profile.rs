@@ -180,8 +180,8 @@ impl Profile {
             Profile::Table { points } => table_integral(points, t) - table_integral(points, 0.0),
             Profile::Harmonic { mean, amplitude, frequency, phase } => {
                 let pulsation = TAU * frequency;
-                let swing = libm::cos(*phase) - libm::cos(pulsation * t + phase);
-                mean * t + amplitude / pulsation * swing
+                let cosines = libm::cos(*phase) - libm::cos(pulsation * t + phase);
+                mean * t + amplitude / pulsation * cosines
             }
             Profile::HalfSine { base, peak, start, duration } => {
                 let area = |t: f64| {

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 /// ```
 /// use bearing_dynamics::ch2_housing::bearing::contact::normal_load;
 /// assert_eq!(normal_load(4e10, 1e-4), 4e10 * 1e-4 * 1e-4_f64.sqrt());
-/// assert_eq!(normal_load(4e10, -1e-6), 0.0); // a gap carries nothing
+/// assert_eq!(normal_load(4e10, -1e-6), 0.0); // a gap has no load
 /// ```
 #[doc(alias = "2.1")]
 #[doc(alias = "4.1")]

@@ -246,7 +246,7 @@ impl EightChain {
     /// Strain energy per undeformed volume (2.8), J/m³.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn energy_density(&self, strain: &Sym3) -> Result<f64, ElastomerError> {
         let at = Strained::of(strain)?;
         Ok(self.modulus * self.chain_energy(at.excess)? + self.volume_energy(at.volume_change))
@@ -255,7 +255,7 @@ impl EightChain {
     /// DEV S, the first term of (2.12), Pa: S minus its part along C⁻¹.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     #[inline]
     pub fn isochoric_stress(&self, strain: &Sym3) -> Result<Sym3, ElastomerError> {
         let at = Strained::of(strain)?;
@@ -267,7 +267,7 @@ impl EightChain {
     /// DEV S and its derivative by the strain, Pa.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn isochoric_tangent(&self, strain: &Sym3) -> Result<(Sym3, Tangent), ElastomerError> {
         let at = Strained::of(strain)?;
         let [slope, bend] = self.slope(at.excess)?;
@@ -289,7 +289,7 @@ impl EightChain {
     /// Second Piola–Kirchhoff stress (2.12), Pa.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn second_piola_kirchhoff(&self, strain: &Sym3) -> Result<Sym3, ElastomerError> {
         let at = Strained::of(strain)?;
         let [slope, _] = self.slope(at.excess)?;
@@ -301,7 +301,7 @@ impl EightChain {
     /// Second Piola–Kirchhoff stress and its derivative by the strain, Pa.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn tangent(&self, strain: &Sym3) -> Result<(Sym3, Tangent), ElastomerError> {
         let (_, mut tangent) = self.isochoric_tangent(strain)?;
         let at = Strained::of(strain)?;

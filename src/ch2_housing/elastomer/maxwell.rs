@@ -77,7 +77,7 @@ impl StepFactors {
     }
 
     /// # Errors
-    /// As [`StepFactors::set`].
+    /// See [`StepFactors::set`].
     pub fn of(elements: &[Maxwell], dt: f64) -> Result<StepFactors, ElastomerError> {
         let mut factors = StepFactors::default();
         factors.set(elements, dt)?;
@@ -220,7 +220,7 @@ pub fn complex_factor(elements: &[Maxwell], pulsation: f64) -> [f64; 2] {
 /// 1/z)/(1 − decay/z), z = exp(iωΔt).
 ///
 /// # Errors
-/// As for [`StepFactors::set`].
+/// See [`StepFactors::set`].
 pub fn complex_factor_of_steps(
     elements: &[Maxwell],
     pulsation: f64,

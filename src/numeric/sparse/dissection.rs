@@ -20,7 +20,7 @@ const WORTH_A_TRY: f64 = 1.25;
 /// Nodes in elimination order.
 pub fn nested_dissection(graph: &Graph, places: &[Vec3]) -> Vec<u32> {
     let count = graph.nodes();
-    let mut work = Work {
+    let mut dissection = Dissection {
         graph,
         places,
         side: vec![Side::Outside; count],
@@ -31,19 +31,19 @@ pub fn nested_dissection(graph: &Graph, places: &[Vec3]) -> Vec<u32> {
     let mut waiting = vec![Part::Body((0..count as u32).collect())];
     while let Some(part) = waiting.pop() {
         match part {
-            Part::Separator(nodes) => work.order.extend(nodes),
-            Part::Body(nodes) if nodes.len() <= LEAF => work.leaf(nodes),
-            Part::Body(nodes) => match work.cut(&nodes) {
+            Part::Separator(nodes) => dissection.order.extend(nodes),
+            Part::Body(nodes) if nodes.len() <= LEAF => dissection.leaf(nodes),
+            Part::Body(nodes) => match dissection.cut(&nodes) {
                 Some(cut) => {
                     waiting.push(Part::Separator(cut.separator));
                     waiting.push(Part::Body(cut.high));
                     waiting.push(Part::Body(cut.low));
                 }
-                None => work.leaf(nodes),
+                None => dissection.leaf(nodes),
             },
         }
     }
-    work.order
+    dissection.order
 }
 
 enum Part {
@@ -51,7 +51,7 @@ enum Part {
     Separator(Vec<u32>),
 }
 
-struct Work<'a> {
+struct Dissection<'a> {
     graph: &'a Graph,
     places: &'a [Vec3],
     side: Vec<Side>,
@@ -59,7 +59,7 @@ struct Work<'a> {
     order: Vec<u32>,
 }
 
-impl Work<'_> {
+impl Dissection<'_> {
     fn leaf(&mut self, nodes: Vec<u32>) {
         let local = minimum_degree(&self.graph.permuted(&nodes));
         self.order.extend(local.iter().map(|at| nodes[*at as usize]));
@@ -85,9 +85,9 @@ impl Work<'_> {
                 }
                 // Cost increases with the separator and with the imbalance of the parts.
                 let uneven = (low + high).powi(2) / (4.0 * low * high);
-                let price = cut.separator.len() as f64 * uneven;
-                if best.as_ref().is_none_or(|(least, _)| price < *least) {
-                    best = Some((price, cut));
+                let cost = cut.separator.len() as f64 * uneven;
+                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    best = Some((cost, cut));
                 }
             }
         }

@@ -49,7 +49,7 @@ impl Factor {
     /// Factorises a matrix with the same pattern.
     ///
     /// # Errors
-    /// As for [`Factor::new`]; the factor is then unusable.
+    /// See [`Factor::new`]; the factor is then unusable.
     pub fn refactor(&mut self, matrix: &SymmetricMatrix) -> Result<(), FactorError> {
         let elimination = self.elimination.clone();
         let mut pending = PendingUpdates::new(&elimination);

@@ -15,7 +15,7 @@ pub enum Side {
     High,
 }
 
-const NOBODY: u32 = u32::MAX;
+const NONE: u32 = u32::MAX;
 /// The merged low and high sides as ends of a path.
 const LOW: u32 = u32::MAX - 1;
 const HIGH: u32 = u32::MAX - 2;
@@ -33,7 +33,7 @@ struct Flow<'a> {
     side: &'a [Side],
     index: &'a [u32],
     band: &'a [u32],
-    /// Previous and next node on the path through a node; [`NOBODY`] without a path.
+    /// Previous and next node on the path through a node; [`NONE`] without a path.
     before: Vec<u32>,
     after: Vec<u32>,
     touches_low: Vec<bool>,
@@ -56,8 +56,8 @@ pub fn smallest_cuts(graph: &Graph, side: &[Side], index: &[u32], band: &[u32]) 
         side,
         index,
         band,
-        before: vec![NOBODY; band.len()],
-        after: vec![NOBODY; band.len()],
+        before: vec![NONE; band.len()],
+        after: vec![NONE; band.len()],
         touches_low: touches(Side::Low),
         touches_high: touches(Side::High),
         level: Vec::new(),
@@ -94,12 +94,12 @@ pub fn smallest_cuts(graph: &Graph, side: &[Side], index: &[u32], band: &[u32]) 
 }
 
 impl Flow<'_> {
-    /// Neighbour number `which` of a node, or [`NOBODY`] if it is not in the band.
+    /// Neighbour number `which` of a node, or [`NONE`] if it is not in the band.
     fn neighbour(&self, at: u32, which: usize) -> Option<u32> {
         self.graph.of(self.band[at as usize]).get(which).map(|node| {
             match self.side[*node as usize] {
                 Side::Band => self.index[*node as usize],
-                _ => NOBODY,
+                _ => NONE,
             }
         })
     }
@@ -141,7 +141,7 @@ impl Flow<'_> {
             let (before, after) = (self.before[at as usize], self.after[at as usize]);
             if exit {
                 reached |= self.touches_high[at as usize] && after != HIGH;
-                if before != NOBODY {
+                if before != NONE {
                     visit(&mut self.level, 2 * at);
                 }
                 for node in self.graph.of(self.band[at as usize]) {
@@ -149,7 +149,7 @@ impl Flow<'_> {
                         visit(&mut self.level, 2 * self.index[*node as usize]);
                     }
                 }
-            } else if before == NOBODY {
+            } else if before == NONE {
                 visit(&mut self.level, 2 * at + 1);
             } else if before != LOW {
                 visit(&mut self.level, 2 * before + 1);
@@ -177,11 +177,11 @@ impl Flow<'_> {
                     self.tried[end as usize] += 1;
                     // First its own entrance, to reverse an existing path.
                     let to = if which == 0 {
-                        (self.before[at] != NOBODY).then_some(2 * at as u32)
+                        (self.before[at] != NONE).then_some(2 * at as u32)
                     } else {
                         match self.neighbour(at as u32, which as usize - 1) {
                             None => break,
-                            Some(NOBODY) => None,
+                            Some(NONE) => None,
                             Some(other) if other == self.after[at] => None,
                             Some(other) => Some(2 * other),
                         }
@@ -194,7 +194,7 @@ impl Flow<'_> {
             } else if self.tried[end as usize] == 0 {
                 self.tried[end as usize] = 1;
                 let to = match self.before[at] {
-                    NOBODY => Some(2 * at as u32 + 1),
+                    NONE => Some(2 * at as u32 + 1),
                     LOW => None,
                     before => Some(2 * before + 1),
                 };
@@ -225,8 +225,8 @@ impl Flow<'_> {
         }
         add.push((path[path.len() - 1] / 2, HIGH));
         for (from, to) in drop {
-            self.after[from as usize] = NOBODY;
-            self.before[to as usize] = NOBODY;
+            self.after[from as usize] = NONE;
+            self.before[to as usize] = NONE;
         }
         for (from, to) in add {
             if from != LOW {
@@ -259,14 +259,14 @@ impl Flow<'_> {
             let (before, after) = (self.before[at as usize], self.after[at as usize]);
             if exit {
                 // Reached from its own entrance, or by reversing the link to the next node.
-                if before == NOBODY {
+                if before == NONE {
                     visit(2 * at);
                 }
-                if after != NOBODY && after != HIGH {
+                if after != NONE && after != HIGH {
                     visit(2 * after);
                 }
             } else {
-                if before != NOBODY {
+                if before != NONE {
                     visit(2 * at + 1);
                 }
                 for node in self.graph.of(self.band[at as usize]) {
