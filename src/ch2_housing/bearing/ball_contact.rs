@@ -23,8 +23,8 @@ pub fn equal_spheres(modulus: f64, radius: f64) -> f64 {
     4.0 / 3.0 * (0.5 * modulus) * (0.5 * radius).sqrt()
 }
 
-/// Peak Hertz pressure between two balls of `radius` (m) under `load` (N), Pa: p = 3F/(2π a²) with a² = R δ, R =
-/// radius/2 and δ = (F/K)^{2/3}.
+/// Peak Hertz pressure between two balls of `radius` (m) under `load` (N), Pa: p = 3F/(2π a²) with a² = R δ,
+/// R = radius/2 and δ = (F/K)^{2/3}.
 pub fn peak_pressure(law: &BallContactLaw, radius: f64, load: f64) -> f64 {
     if load <= 0.0 {
         return 0.0;

@@ -1,9 +1,9 @@
 //! Sliding of a ball on a race, and traction integrated over the contact ellipse.
 //!
 //! The dissertation varies the sliding speed along the major axis only (2.2.1). The ellipse is cut into slices across
-//! this axis. Each slice has its own slip and the share of the normal load given by Hertz's pressure, q(y) = (3W/4a)(1
-//! − y²/a²); its friction follows from a law of [`traction`](super::traction). As an extension, several points across a
-//! slice also resolve the slip that spin adds along the minor axis.
+//! this axis. Each slice has its own slip and the share of the normal load given by Hertz's pressure,
+//! q(y) = (3W/4a)(1 − y²/a²); its friction follows from a law of [`traction`](super::traction). As an extension,
+//! several points across a slice also resolve the slip that spin adds along the minor axis.
 //!
 //! All functions are scalar and branch-free, so that they vectorise.
 
@@ -27,9 +27,9 @@ impl Slices {
     /// `count` slices of equal width; each share is the exact integral of Hertz's pressure over the slice, so that the
     /// shares sum to one.
     ///
-    /// Each slice has `across` points. The pressure along it is q(x) ∝ √(1 − (x/w)²) with the half width w = b√(1 −
-    /// (y/a)²), the weight of the Gauss–Chebyshev rule of the second kind: xⱼ = w cos(jπ/(n + 1)), shares 2 sin²(jπ/(n
-    /// + 1))/(n + 1). A single point is on the major axis.
+    /// Each slice has `across` points. The pressure along it is q(x) ∝ √(1 − (x/w)²), w = b√(1 − (y/a)²), the weight of
+    /// the Gauss–Chebyshev rule of the second kind: points xⱼ = w cos(jπ/(n + 1)), shares
+    /// 2 sin²(jπ/(n + 1))/(n + 1). A single point is on the major axis.
     pub fn new(count: usize, across: usize) -> Slices {
         let width = 2.0 / count as f64;
         // ∫ (3/4)(1 − η²) dη.
