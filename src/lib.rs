@@ -1,12 +1,11 @@
 //! Simulation of ball bearings, rigid or on flexible supports: housings, rubber bushings, shafts.
 //!
-//! Chapters hold the equations of the source as functions on plain data. The solver works on one assembly: lists of bodies,
-//! connections, loads and sensors. Imports run one way:
-//! `kinematics, mesh, elements <- ch2_housing <- ch3_bushing <- ch4_rotor <- ch5_cage <- numeric, assembly, members, solids,
-//! equilibrium, motion, vibrations <- scene <- output`. `docs/theory.md` lists the home of every equation and its
-//! verification case.
+//! The chapters contain the equations of the dissertation as functions on plain data. The solver works on one assembly:
+//! lists of bodies, connections, loads and sensors. Imports have one direction: `kinematics, mesh, elements <-
+//! ch2_housing <- ch3_bushing <- ch4_rotor <- ch5_cage <- numeric, assembly, members, solids, equilibrium, motion,
+//! vibrations <- scene <- output`. `docs/theory.md` lists the location of every equation and its verification case.
 #![forbid(unsafe_code)]
-// Indices are the notation of components, as in the equations.
+// Indices denote components, as in the equations.
 #![allow(clippy::needless_range_loop)]
 
 pub mod assembly;

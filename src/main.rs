@@ -1,6 +1,6 @@
-//! The `bearing` command: arguments in, exit code out.
+//! The `bearing` command.
 //!
-//! Exit codes: 0 done, 1 compared and different, 2 could not (one clear message on stderr).
+//! Exit codes: 0 success, 1 compared results differ, 2 failure (one message on stderr).
 #![forbid(unsafe_code)]
 
 mod commands;
@@ -10,11 +10,11 @@ use clap::{Parser, Subcommand};
 use commands::{Outcome, check, compare, memory, modes, pack, plan, run, schema, statics, sweep};
 use std::process::ExitCode;
 
-/// Rolling bearings on flexible supports: describe one in a text file, solve it, trust it.
+/// Simulate rolling bearings on flexible supports, described in a text file
 #[derive(Parser)]
 #[command(name = "bearing", version, after_help = "Scenes are described in docs/scene.md.")]
 struct Arguments {
-    /// Memory that the program may take in all, GB [default: what the machine has left]
+    /// Total memory that the program may use, GB [default: available memory]
     #[arg(long, global = true, value_name = "GB", value_parser = memory::parse_gigabytes, allow_negative_numbers = true)]
     memory: Option<f64>,
     #[command(subcommand)]
@@ -23,23 +23,23 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Read a scene and print what was understood; solve nothing
+    /// Check a scene and print how it is interpreted, without solving
     Check(check::Arguments),
-    /// List what a solution of the scene computes, what it leaves out, and why
+    /// List what a solution of the scene computes, what it omits, and why
     Plan(plan::Arguments),
-    /// A bearing or a solid in motion: step through time and write a results folder
+    /// Simulate a bearing or a solid over time and write a results folder
     Run(run::Arguments),
-    /// Equilibrium of a bearing (ball loads, stiffness) or of a solid (displacements, stresses)
+    /// Compute the equilibrium of a bearing (ball loads, stiffness) or a solid (displacements, stresses)
     Statics(statics::Arguments),
-    /// Natural frequencies: of a solid with its mode shapes, of bearings and what they sit on
+    /// Compute natural frequencies and modes of a solid, or of bearings and their supports
     Modes(modes::Arguments),
-    /// Solve a scene for many values of some keys, on all cores; the same command resumes it
+    /// Solve a scene for many values of some keys, on all cores; repeat the command to resume
     Sweep(sweep::Arguments),
     /// Write a case pack for other programs: scene, expected results, tolerances, hashes
     Pack(pack::Arguments),
-    /// Compare two results folders or files and name the first difference
+    /// Compare two results folders or files and report the first difference
     Compare(compare::Arguments),
-    /// Print the JSON Schema of scenes, or their manual
+    /// Print the JSON Schema of scenes, or their reference manual
     Schema(schema::Arguments),
 }
 
@@ -47,7 +47,7 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are answers, everything else is a mistake; clap knows which.
+            // Clap also returns help and version as errors; they exit with 0.
             let _ = error.print();
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }

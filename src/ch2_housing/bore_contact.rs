@@ -1,12 +1,12 @@
-//! Contact of a rigid cylinder with the surface of a deformable solid, (2.16)–(2.19): the outer race
-//! in its bore, or the cylinder of 2.3.2 on a block.
+//! Contact of a rigid cylinder with the surface of a deformable solid, (2.16)–(2.19): the outer race in its bore, or
+//! the cylinder on a block in 2.3.2.
 //!
-//! Both are one formula. A node of the solid that is nearer to the cylinder's axis than its radius
-//! is pushed outwards: from within a bore that is towards the housing, from above a block into it.
+//! Both cases use the same formula. A node of the solid closer to the cylinder's axis than its radius is forced
+//! outwards.
 //!
-//! The cylinder has its own frame, X along its axis, and a finite width. Energy of a node is
-//! ½ K (R − d)², its force the gradient; nodes beyond the width are not touched, and a node that
-//! slides over the rim loses its energy at once.
+//! The cylinder has its own frame, X along its axis, and a finite width. The energy of a node is ½ K (R − d)², its
+//! force the gradient. Nodes beyond the width have no contact; a node that slides over the rim loses its energy at
+//! once.
 
 use crate::kinematics::Pose;
 use crate::kinematics::strain::Mat3;
@@ -19,33 +19,33 @@ use crate::mesh::{Face, TetMesh};
 pub struct Cylinder {
     /// R_OR of (2.19).
     pub radius: f64,
-    /// Along the axis, half to each side of the centre.
+    /// Width along the axis, m, centred on the origin.
     pub width: f64,
 }
 
 /// Contact stiffness K of (2.19).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Penalty {
-    /// N/m for each node, as printed. The finer the mesh, the stiffer the contact.
+    /// N/m per node, as printed. The contact becomes stiffer as the mesh is refined.
     PerNode(f64),
-    /// N/m³: K is this times the node's share of the surface, so that pressure depends on
-    /// penetration alone and not on the mesh.
+    /// N/m³: K is this value times the node's tributary area, so that pressure depends only on penetration and not on
+    /// the mesh.
     PerArea(f64),
 }
 
 /// K of 2.2.4 between outer race and steel, N/m.
 pub const STEEL_NODE_STIFFNESS: f64 = 2.5e8;
-/// Share of a node at which an area-weighted stiffness equals the printed one, m². The source states
-/// no mesh; 1 mm² stands for bores meshed at about a millimetre.
+/// Tributary area of a node at which an area-weighted stiffness equals the printed one, m². The dissertation gives no
+/// mesh; 1 mm² represents bores meshed at about 1 mm.
 pub const REFERENCE_AREA: f64 = 1e-6;
 
 impl Penalty {
-    /// Pressure over penetration such that a node of [`REFERENCE_AREA`] has the given stiffness.
+    /// Area-weighted stiffness for which a node of [`REFERENCE_AREA`] has `node_stiffness` (N/m).
     pub fn per_area_like(node_stiffness: f64) -> Penalty {
         Penalty::PerArea(node_stiffness / REFERENCE_AREA)
     }
 
-    /// Stiffness of a node that carries `area` (m²) of the surface, N/m.
+    /// Stiffness of a node with tributary area `area` (m²), N/m.
     pub fn of_node(self, area: f64) -> f64 {
         match self {
             Penalty::PerNode(stiffness) => stiffness,
@@ -54,29 +54,28 @@ impl Penalty {
     }
 }
 
-/// Area-weighted, with the source's value for steel at [`REFERENCE_AREA`].
+/// Area-weighted, with the printed value for steel at [`REFERENCE_AREA`].
 impl Default for Penalty {
     fn default() -> Self {
         Penalty::per_area_like(STEEL_NODE_STIFFNESS)
     }
 }
 
-/// A surface node that may touch the cylinder.
+/// Surface node that can touch the cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactNode {
     pub node: u32,
-    /// Undeformed place, m.
+    /// Undeformed position, m.
     pub place: Vec3,
-    /// Its share of the surface, m².
+    /// Tributary area of the surface, m².
     pub area: f64,
 }
 
-/// The nodes of `faces` that carry a share of their area, ascending.
+/// Nodes of `faces` with a tributary area, ascending.
 ///
-/// Each corner of a three-node face has a third of it, each mid-side node of a six-node face what
-/// [`Share::ThreeNodes`] gives it, a third where the face is flat: with these shares a uniform
-/// pressure is what the elements take it for. Corners of six-node faces carry next to nothing, of
-/// either sign, and are left out.
+/// Each corner of a three-node face has a third of its area; each mid-side node of a six-node face has its
+/// [`Share::ThreeNodes`], a third for a flat face. With these areas a uniform pressure gives the consistent nodal
+/// forces. Corners of six-node faces have nearly zero areas of either sign and are left out.
 pub fn contact_nodes(mesh: &TetMesh, faces: &[Face]) -> Vec<ContactNode> {
     let areas = tributary_areas(mesh, faces, Share::ThreeNodes);
     let with_share = areas.iter().enumerate().filter(|(_, area)| **area > 0.0);
@@ -85,7 +84,7 @@ pub fn contact_nodes(mesh: &TetMesh, faces: &[Face]) -> Vec<ContactNode> {
         .collect()
 }
 
-/// The cylinder's frame: what a loop over nodes needs of its pose.
+/// Position and orientation of the cylinder for a loop over nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Centre C of the cylinder in the inertial frame, m.
@@ -101,14 +100,14 @@ impl Frame {
         Frame { centre: pose.position.into(), to_body: [row(0), row(1), row(2)] }
     }
 
-    /// Body-fixed components of the vector from the centre to a place (2.17), m.
+    /// Body-fixed components of the vector from the centre to `place` (2.17), m.
     pub fn seen(&self, place: Vec3) -> Vec3 {
         let from_centre = sub(place, self.centre);
         self.to_body.map(|axis| dot(axis, from_centre))
     }
 }
 
-/// A node inside the cylinder.
+/// Contact of a node inside the cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
     /// R − d, m.
@@ -117,14 +116,14 @@ pub struct Touch {
     pub distance: f64,
     /// Outward normal of the cylinder at the node, inertial frame.
     pub normal: Vec3,
-    /// Square to it and to the axis, inertial frame.
+    /// Circumferential unit vector at the node, perpendicular to normal and axis, inertial frame.
     pub tangent: Vec3,
     /// From the cylinder's centre to the node, inertial frame, m.
     pub arm: Vec3,
 }
 
-/// Whether a node at `place` (m) is inside the cylinder, (2.17) and (2.18). On the axis there is no
-/// normal: its components are then not numbers.
+/// Contact of a node at `place` (m), (2.17) and (2.18); `None` if it is outside the cylinder. On the axis the normal is
+/// undefined and its components are NaN.
 #[inline]
 pub fn touch(cylinder: &Cylinder, frame: &Frame, place: Vec3) -> Option<Touch> {
     let [x, y, z] = frame.seen(place);
@@ -144,7 +143,7 @@ pub fn touch(cylinder: &Cylinder, frame: &Frame, place: Vec3) -> Option<Touch> {
 }
 
 impl Touch {
-    /// Force on the node (2.19), N; the cylinder gets its negative.
+    /// Force on the node (2.19), N; the cylinder takes the opposite force.
     pub fn force(&self, stiffness: f64) -> Vec3 {
         scale(self.normal, stiffness * self.penetration)
     }
@@ -154,8 +153,8 @@ impl Touch {
         0.5 * stiffness * self.penetration * self.penetration
     }
 
-    /// Minus the derivative of the force by the node's place, N/m: K n nᵀ − K (R − d)/d t tᵀ. The
-    /// normal turns as the node moves round the cylinder, which pushes it on.
+    /// Tangent stiffness, minus the derivative of the force by the node's position, N/m: K n nᵀ − K (R − d)/d t tᵀ. The
+    /// second term is negative because the normal turns as the node moves around the cylinder.
     pub fn stiffness(&self, stiffness: f64) -> Mat3 {
         let geometric = stiffness * self.penetration / self.distance;
         let (n, t) = (self.normal, self.tangent);
@@ -163,35 +162,35 @@ impl Touch {
         [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| entry(i, j)))
     }
 
-    /// K n nᵀ alone: positive, where the whole would turn a soft solid unstable at a penetration far
-    /// beyond that of equilibrium.
+    /// K n nᵀ alone, N/m: positive semidefinite. The full tangent can make a soft solid unstable at penetrations far
+    /// beyond equilibrium.
     pub fn normal_stiffness(&self, stiffness: f64) -> Mat3 {
         let n = self.normal;
         [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| stiffness * n[i] * n[j]))
     }
 }
 
-/// What a contact does to the cylinder, and its measures.
+/// Force and moment of a contact on the cylinder, with summary values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactSum {
-    /// On the cylinder, N.
+    /// Force on the cylinder, N.
     pub force: Vec3,
-    /// On the cylinder about its centre, N·m.
+    /// Moment on the cylinder about its centre, N·m.
     pub moment: Vec3,
-    /// Σ K (R − d): what the contact resists growth of the radius with, N.
+    /// Radial contact load Σ K (R − d), which resists growth of the radius, N.
     pub radial_load: f64,
-    /// Of the penalty springs, J.
+    /// Energy of the penalty springs, J.
     pub energy: f64,
     /// Largest penetration, m.
     pub deepest: f64,
-    /// Largest nodal force over the node's share of the surface, Pa.
+    /// Largest ratio of nodal force to tributary area, Pa.
     pub peak_pressure: f64,
     pub touching: usize,
     pub tested: usize,
 }
 
-/// Contact of `nodes`, displaced by `displacement` (m, by node number): calls `on_touch` with each
-/// node that touches, its stiffness (N/m) and its force (N), in the order of the list.
+/// Contact of `nodes`, displaced by `displacement` (m, by node number). Calls `on_touch` with each contact node, its
+/// stiffness (N/m) and its force (N), in the order of the list.
 pub fn contact(
     cylinder: &Cylinder,
     frame: &Frame,
@@ -219,9 +218,8 @@ pub fn contact(
     sum
 }
 
-/// Splits nodes into those within `reach` (m) of touching and those beyond: as long as the motion
-/// of a far node, of the cylinder at its place, and the growth of the radius sum to less than
-/// `reach`, it cannot touch and need not be tested.
+/// Splits nodes into those within the margin `reach` (m) of touching and those beyond. A far node needs no test as long
+/// as its displacement, the cylinder's displacement there and the growth of the radius sum to less than `reach`.
 pub fn split_by_distance(
     cylinder: &Cylinder,
     frame: &Frame,
@@ -233,7 +231,7 @@ pub fn split_by_distance(
         let [x, y, z] = frame.seen(add(node.place, displacement(node.node)));
         let (gap, beside) =
             ((y * y + z * z).sqrt() - cylinder.radius, x.abs() - 0.5 * cylinder.width);
-        // Not `>=`: a place that is not a number stays among those tested.
+        // Not `>=`: a NaN position stays among the tested nodes.
         !(gap > reach || beside > reach)
     })
 }

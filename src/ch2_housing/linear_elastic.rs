@@ -1,11 +1,10 @@
-//! The linear law of steel parts (2.2.2): second Piola–Kirchhoff stress linear in the
-//! Green–Lagrange strain.
+//! Linear elastic law of steel parts (2.2.2): second Piola–Kirchhoff stress linear in the Green–Lagrange strain.
 
 use crate::kinematics::number::Number;
 use crate::kinematics::strain::Sym3;
 use thiserror::Error;
 
-/// An isotropic linear solid (St. Venant–Kirchhoff).
+/// Isotropic St. Venant–Kirchhoff solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearElastic {
     /// Lamé's first parameter, Pa.
@@ -29,7 +28,7 @@ impl LinearElastic {
     /// From Young's modulus (Pa) and Poisson's ratio.
     ///
     /// # Errors
-    /// A modulus that is not positive, a ratio outside (−1, ½).
+    /// If the modulus is not positive or the ratio is outside (−1, ½).
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Result<LinearElastic, ElasticError> {
         if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
             return Err(ElasticError::YoungsModulus(youngs_modulus));
@@ -69,7 +68,7 @@ impl LinearElastic {
         ]
     }
 
-    /// Strain energy per undeformed volume whose derivative (2.4) is, J/m³.
+    /// Strain energy per undeformed volume, J/m³; its derivative is (2.4).
     pub fn energy_density(&self, strain: &Sym3) -> f64 {
         let trace = strain[0] + strain[1] + strain[2];
         let squares: f64 = strain[..3].iter().map(|e| e * e).sum::<f64>()

@@ -1,20 +1,21 @@
-//! A dent in a raceway (3.4.4): the contact law F = K_H δ^n of (3.20), whose exponent follows the load, the shape of the
-//! dent and where the ball is over it.
+//! Dent in a raceway (3.4.4): contact law F = K_H δ^n of (3.20), with an exponent that depends on the load, the dent's
+//! shape and the ball's position over it.
 //!
-//! The source prints no formula of the exponent. Here it comes from what it stands for: a ball pressed on a dented
-//! race, without friction. Such a contact stores an energy U that depends on the approach δ and on where
-//! the contact lies from the dent's centre, s along the rolling direction and y across the groove, and all its forces are slopes of U.
-//! With U = (2/5) K_H w^{5/2} the law is one length, w = δ − Δ(δ, s, y): the approach at which the undented contact
-//! holds the same energy. Then
+//! The dissertation prints no formula for the exponent. Here it is derived from frictionless contact of a ball on a
+//! dented race. This contact stores an energy U that depends on the approach δ and on the position of the contact
+//! relative to the dent's centre, s along the rolling direction and y across the groove. All its forces are derivatives
+//! of U. Write U = (2/5) K_H w^{5/2} with w = δ − Δ(δ, s, y), the approach at which the undented contact stores the
+//! same energy. Then
 //!
 //! F = K_H w^{3/2} ∂w/∂δ,  and  n = 3/2 + ln(F/(K_H δ^{3/2}))/ln(δ/1 m),
 //!
-//! so that (3.20) holds in SI numbers, with a reference length of 1 m. Far from the dent Δ = 0, n = 3/2. A table of Δ is made once from a half-space
-//! (`members::dent_table`), which needs the dent and both relative radii of the contact and nothing else.
+//! so that (3.20) holds in SI units with a reference length of 1 m. Far from the dent Δ = 0 and n = 3/2. A table of Δ
+//! is computed once with a half-space model (`members::dent_table`) from the dent and both relative radii of the
+//! contact.
 
 use std::f64::consts::{PI, TAU};
 
-/// A dent, m: a pit between r = 0 and half its diameter, and the shoulder that was pushed up around it.
+/// Shape of a dent, m: a pit of the given diameter, surrounded by a raised shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DentShape {
     pub diameter: f64,
@@ -24,8 +25,8 @@ pub struct DentShape {
 }
 
 impl DentShape {
-    /// Depth below the undented surface at a distance from the centre, m: half a wave of a cosine in the pit, a
-    /// whole one on the shoulder, both flat where they meet; negative on the shoulder.
+    /// Depth below the undented surface at distance `r` (m) from the centre, m; negative on the shoulder. Half a cosine
+    /// wave in the pit and a full one on the shoulder, with zero slope at the joint.
     pub fn depth_at(&self, r: f64) -> f64 {
         let radius = 0.5 * self.diameter;
         if r < radius {
@@ -39,13 +40,13 @@ impl DentShape {
         0.0
     }
 
-    /// Where the surface is as it was, m from the centre.
+    /// Radius of the dented area including the shoulder, m.
     pub fn reach(&self) -> f64 {
         let shoulder = if self.shoulder_height > 0.0 { self.shoulder_width } else { 0.0 };
         0.5 * self.diameter + shoulder
     }
 
-    /// Whether there is nothing of it.
+    /// Returns whether the dent has neither depth nor shoulder.
     pub fn vanishes(&self) -> bool {
         self.depth == 0.0 && self.shoulder_height == 0.0
     }
@@ -55,30 +56,30 @@ impl DentShape {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dent {
     pub shape: DentShape,
-    /// Inner race 0, outer race 1.
+    /// Dented race: 0 inner, 1 outer.
     pub side: usize,
-    /// Around the race from its own Y towards its own Z, rad; it turns with the race.
+    /// Angle around the race from its own Y towards its own Z, rad; rotates with the race.
     pub angle: f64,
-    /// Around the groove from its bottom towards the race's X, rad.
+    /// Angle around the groove from its bottom towards the race's X, rad.
     pub groove_angle: f64,
 }
 
-/// How Δ changes, all in m or without unit.
+/// Lost approach Δ and its derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lost {
-    /// Δ, m: the approach that the dent costs.
+    /// Δ, m: the approach lost to the dent.
     pub value: f64,
-    /// Slopes by the approach, along the rolling direction and across the groove.
+    /// Derivatives of Δ by the approach, along the rolling direction and across the groove, dimensionless.
     pub by_approach: f64,
     pub along: f64,
     pub across: f64,
 }
 
-/// Δ over q = √(δ + shoulder) and a distance σ of 0 to 1, of contacts along the rolling direction and across the groove:
-/// cubic splines on an even grid.
+/// Table of Δ over q = √(δ + shoulder) and a normalised distance σ in [0, 1], for contacts along the rolling direction
+/// and across the groove: cubic splines on a uniform grid.
 ///
-/// σ² = (s/l_s)² + (y/l_y)² with l = reach + √(2R) q: at σ = 1 the dent leaves what the ball overlaps at that approach. Between the
-/// two directions Δ goes with the squared cosine of the angle in that ellipse.
+/// σ² = (s/l_s)² + (y/l_y)² with l = reach + √(2R) q; at σ = 1 the dent leaves the overlap of the ball at that
+/// approach. Between the two directions Δ is interpolated with the squared cosine of the angle in that ellipse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DentTable {
     /// m.
@@ -86,7 +87,7 @@ pub struct DentTable {
     pub reach: f64,
     /// √(2R) of the relative radii, m^0.5: rolling direction, across the groove.
     pub spread: [f64; 2],
-    /// Largest q, m^0.5, beyond which Δ stays.
+    /// Largest q, m^0.5; Δ is constant beyond it.
     pub deepest: f64,
     /// Intervals in q and σ.
     pub intervals: [usize; 2],
@@ -94,7 +95,7 @@ pub struct DentTable {
     pub coefficients: [Vec<f64>; 2],
 }
 
-/// Values of the four cubic B-splines that are not zero, and their slopes, `u` of an interval in.
+/// Values and slopes of the four nonzero cubic B-splines at the fraction `u` of an interval.
 #[inline]
 fn basis(u: f64) -> ([f64; 4], [f64; 4]) {
     let v = 1.0 - u;
@@ -108,7 +109,7 @@ fn basis(u: f64) -> ([f64; 4], [f64; 4]) {
     (value, slope)
 }
 
-/// The interval that holds `at` (in intervals) and how far in.
+/// Interval that contains `at` (in intervals) and the fraction within it.
 #[inline]
 fn interval(at: f64, count: usize) -> (usize, f64) {
     let index = (at as usize).min(count - 1);
@@ -116,12 +117,12 @@ fn interval(at: f64, count: usize) -> (usize, f64) {
 }
 
 impl DentTable {
-    /// Δ and its slopes at an approach δ and a place s, y from the dent's centre (m); `None` where the dent is out of
-    /// reach.
+    /// Δ and its derivatives at an approach δ (m) and a position s, y relative to the dent's centre (m); `None` if the
+    /// contact does not reach the dent.
     #[inline]
     pub fn lost(&self, approach: f64, [s, y]: [f64; 2]) -> Option<Lost> {
         let square = approach + self.shoulder;
-        // Written so that NaN goes on and is found.
+        // NaN passes through, so that it is caught.
         if square <= 0.0 {
             return None;
         }
@@ -140,7 +141,7 @@ impl DentTable {
         let (by_row, row_slope) = basis(u);
         let (by_column, column_slope) = basis(v);
         let row_scale = if stays { 0.0 } else { rows as f64 / self.deepest };
-        // Value, slope by q, slope by σ of both directions.
+        // Value, slope by q and slope by σ for both directions.
         let of = |coefficients: &[f64]| {
             let mut sum = [0.0; 3];
             for k in 0..4 {
@@ -157,12 +158,12 @@ impl DentTable {
             [sum[0], sum[1] * row_scale, sum[2] * columns as f64]
         };
         let [along, across] = [of(&self.coefficients[0]), of(&self.coefficients[1])];
-        // Parts of the two directions; at the centre both are the same.
+        // Weights of the two directions; at the centre both have the same Δ.
         let (part, per_square) =
             if distance > 0.0 { (z * z / distance, 1.0 / distance) } else { (0.0, 0.0) };
         let differ = across[0] - along[0];
         let mixed = |i: usize| along[i] + part * (across[i] - along[i]);
-        // By x and by z: through σ and through the part.
+        // Derivatives by x and z, through σ and through the weight.
         let per_sigma = if sigma > 0.0 { mixed(2) / sigma } else { 0.0 };
         let turn = 2.0 * differ * part * per_square;
         let by_x = x * (per_sigma - turn);
@@ -178,13 +179,13 @@ impl DentTable {
         })
     }
 
-    /// Exponent n of (3.20) at an approach δ > 0 and a place (m), with lengths in metres; infinite where the ball hangs free.
+    /// Exponent n of (3.20) at an approach δ > 0 and a position (m), with lengths in metres; infinite without contact.
     #[doc(alias = "3.20")]
     pub fn exponent(&self, approach: f64, place: [f64; 2]) -> f64 {
         let share = self.lost(approach, place).map_or(1.0, |lost| {
             let w = approach - lost.value;
-            let held = if w > 0.0 { w / approach } else { 0.0 };
-            held * held.sqrt() * (1.0 - lost.by_approach)
+            let ratio = if w > 0.0 { w / approach } else { 0.0 };
+            ratio * ratio.sqrt() * (1.0 - lost.by_approach)
         });
         1.5 + libm::log(share) / libm::log(approach)
     }
@@ -196,8 +197,8 @@ pub fn dented_load(stiffness: f64, approach: f64, exponent: f64) -> f64 {
     stiffness * libm::pow(approach, exponent)
 }
 
-/// Coefficients of a cubic spline through values at even distances, two more than there are values. It has no slope at
-/// its end; at its beginning no slope either, or else no curvature.
+/// Coefficients of a cubic spline through equally spaced values, two more than there are values. Zero slope at the end;
+/// at the beginning zero slope if `flat_beginning`, otherwise zero curvature.
 pub fn spline(values: &[f64], flat_beginning: bool) -> Vec<f64> {
     let count = values.len();
     // c₋₁ + 4c₀ + c₁ = 6f₀ and so on, c₋₁ = c₁ or c₋₁ = 2c₀ − c₁; cₙ₊₁ = cₙ₋₁.

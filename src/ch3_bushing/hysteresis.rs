@@ -1,11 +1,11 @@
-//! How stiff a bushing is in a cycle and how much it takes of its energy (3.13)–(3.14).
+//! Dynamic stiffness and damping ratio of a bushing in a cycle (3.13)–(3.14).
 
 use crate::ch2_housing::elastomer::ElastomerError;
 use crate::ch2_housing::elastomer::maxwell::{Maxwell, complex_factor, complex_factor_of_steps};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Of a loop of force over displacement, or of a complex stiffness.
+/// Dynamic stiffness and damping ratio of a force–displacement loop or of a complex stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hysteresis {
     /// K_d, N/m.
@@ -14,15 +14,15 @@ pub struct Hysteresis {
     pub damping_ratio: f64,
 }
 
-/// Energy that a closed loop of displacement (m) and force (N) encloses, J: positive where force leads. Its
-/// points are joined by straight lines, the last with the first.
+/// Energy enclosed by a closed loop of displacement (m) and force (N), J; positive if the force leads. The points are
+/// joined by straight lines, the last to the first.
 pub fn loop_area(points: &[[f64; 2]]) -> f64 {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(a, b)| 0.5 * (a[1] + b[1]) * (b[0] - a[0])).sum()
 }
 
-/// K_d = F_max/x_max (3.13) and η_d = E_d/(π K_d x_max²) (3.14) of a closed loop of displacement (m) and
-/// force (N), largest magnitudes counting. `None` of a loop without displacement or force.
+/// K_d = F_max/x_max (3.13) and η_d = E_d/(π K_d x_max²) (3.14) of a closed loop of displacement (m) and force (N),
+/// from the largest magnitudes. `None` if displacement or force is zero.
 pub fn of_loop(points: &[[f64; 2]]) -> Option<Hysteresis> {
     let largest = |i: usize| points.iter().map(|p| p[i].abs()).fold(0.0, f64::max);
     let (x, force) = (largest(0), largest(1));
@@ -34,14 +34,14 @@ pub fn of_loop(points: &[[f64; 2]]) -> Option<Hysteresis> {
     })
 }
 
-/// The same of a linear bushing with a complex stiffness, N/m: K_d = |K|, η_d = K″/|K|.
+/// Dynamic stiffness and damping ratio of a linear bushing with a complex stiffness, N/m: K_d = |K|, η_d = K″/|K|.
 pub fn of_complex_stiffness(storage: f64, loss: f64) -> Hysteresis {
     let magnitude = (storage * storage + loss * loss).sqrt();
     Hysteresis { dynamic_stiffness: magnitude, damping_ratio: loss / magnitude }
 }
 
-/// First harmonic of force over that of displacement, N/m, of one steady cycle at even times. `None` of fewer
-/// than three points, and of displacements without one.
+/// Complex stiffness from first harmonics, N/m: force divided by displacement over one steady cycle of equally spaced
+/// points. `None` for fewer than three points or zero displacement harmonic.
 pub fn first_harmonic(points: &[[f64; 2]]) -> Option<Complex<f64>> {
     let turn = TAU / points.len() as f64;
     let [x, force] = [0, 1].map(|of: usize| {
@@ -55,12 +55,12 @@ pub fn first_harmonic(points: &[[f64; 2]]) -> Option<Complex<f64>> {
     some.then(|| force / x)
 }
 
-/// The same of a steady cycle of `period` s whose points are ends of even implicit steps of a bushing with these
-/// Maxwell elements. What the recursion of the steps makes of steady cycles is known, and the stiffness of a bonded
-/// bushing nearly proportional to the shear modulus: it is divided by that and multiplied by what it should be.
+/// [`first_harmonic`] of a steady cycle of `period` s whose points are ends of equal implicit steps of a bushing with
+/// these Maxwell elements. The stiffness of a bonded bushing is nearly proportional to the shear modulus. The known
+/// stiffness factor of the discrete recursion is therefore replaced by the exact one.
 ///
 /// # Errors
-/// A period that is negative or not a number.
+/// If the period is negative or NaN.
 pub fn of_steps(
     points: &[[f64; 2]],
     elements: &[Maxwell],

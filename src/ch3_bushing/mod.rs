@@ -1,4 +1,4 @@
-//! Chapter 3: elastomeric bushings, dents in races.
+//! Chapter 3: elastomeric bushings and raceway dents.
 pub mod dent;
 pub mod hysteresis;
 pub mod similitude;

@@ -1,17 +1,17 @@
-//! Bushings of one shape: dimensionless groups (3.15)–(3.19).
+//! Dimensionless groups of geometrically similar bushings (3.15)–(3.19).
 
 use crate::ch3_bushing::hysteresis::Hysteresis;
 
-/// What the groups are formed with. Lengths in m.
+/// Reference modulus and lengths of the dimensionless groups. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// C_R, Pa.
     pub modulus: f64,
-    /// D, inner.
+    /// D, inner diameter.
     pub diameter: f64,
     /// L.
     pub length: f64,
-    /// H, radial.
+    /// H, radial thickness.
     pub thickness: f64,
 }
 

@@ -1,27 +1,27 @@
-//! The shaft as a Timoshenko beam: round section, rotary inertia, an element of five stations.
+//! Timoshenko beam model of the shaft: circular section, rotary inertia, five-node element.
 //!
-//! One plane of bending at a time, over the deflection w (m) and the turn s of the section (rad: the slope but for shear)
-//! at each station. Both are polynomials of degree four in between, which hold the cubic of a beam that is loaded at its ends:
-//! such loads are answered exactly, nothing locks however thin the shaft, and frequencies have errors of the eighth order of the
-//! element's length (of the sixth in slender shafts). The usual element of two stations (its shapes solve the static beam) has a constant shear force,
-//! and errors of the second order wherever shear matters.
+//! One bending plane at a time; the unknowns at each node are the deflection w (m) and the section rotation s (rad).
+//! Both are interpolated by quartic polynomials. These contain the cubic solution for loads at the element ends, so
+//! that such loads are solved exactly and slender shafts do not lock. Frequency errors are of eighth order in the
+//! element length (sixth order for slender shafts); the usual two-node element with static shape functions has
+//! second-order errors where shear matters.
 
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::PI;
 
-/// Stations of an element, equally spaced, its ends among them.
+/// Nodes of an element, equally spaced, including its ends.
 pub const NODES: usize = 5;
 
-/// Over w, s of each station.
+/// Square matrix over w, s of each node.
 pub type PlaneMatrix = SMatrix<f64, { 2 * NODES }, { 2 * NODES }>;
 type PlaneVector = SVector<f64, { 2 * NODES }>;
 
-/// A full or hollow round section.
+/// Solid or hollow circular section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
     /// m.
     pub outer_diameter: f64,
-    /// m; zero where it is full.
+    /// m; zero for a solid section.
     pub inner_diameter: f64,
 }
 
@@ -32,26 +32,26 @@ impl Section {
         PI / 4.0 * (a * a - b * b)
     }
 
-    /// Second moment of area about a diameter, m⁴; twice of it about the axis.
+    /// Second moment of area about a diameter, m⁴; half the polar second moment.
     pub fn second_moment(&self) -> f64 {
         let [a, b] = [self.outer_diameter, self.inner_diameter];
         PI / 64.0 * (a * a * a * a - b * b * b * b)
     }
 }
 
-/// Which part of its area a section shears with.
+/// Shear coefficient formula.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum ShearCoefficient {
-    /// From the static beam: 6(1+ν)/(7+6ν) for a full section (G. R. Cowper, J. Appl. Mech. 33, 1966).
+    /// From the static beam: 6(1+ν)/(7+6ν) for a solid section (G. R. Cowper, J. Appl. Mech. 33, 1966).
     #[default]
     Cowper,
-    /// From its vibrations: 6(1+ν)²/(7+12ν+4ν²) for a full section (J. R. Hutchinson, J. Appl. Mech. 68, 2001).
+    /// From vibrations: 6(1+ν)²/(7+12ν+4ν²) for a solid section (J. R. Hutchinson, J. Appl. Mech. 68, 2001).
     Hutchinson,
     Given(f64),
 }
 
 impl ShearCoefficient {
-    /// κ of a section of a material of that Poisson ratio.
+    /// Shear coefficient κ of a section for a Poisson ratio.
     pub fn of(self, section: &Section, poisson_ratio: f64) -> f64 {
         let nu = poisson_ratio;
         let m2 = {
@@ -77,7 +77,7 @@ impl ShearCoefficient {
     }
 }
 
-/// A length of shaft of one section and material.
+/// Beam element of uniform section and material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element {
     /// m.
@@ -90,7 +90,7 @@ pub struct Element {
     pub stretch: f64,
     /// ρA, kg/m.
     pub line_mass: f64,
-    /// ρI, kg·m: inertia of a metre about a diameter; twice of it about the axis.
+    /// ρI, kg·m: rotary inertia per metre about a diameter; half the polar value.
     pub line_inertia: f64,
 }
 
@@ -116,28 +116,27 @@ impl Element {
         }
     }
 
-    /// Of bending and shear: ∫ EI s′² + κGA (w′ − s)².
+    /// Bending and shear stiffness: ∫ EI s′² + κGA (w′ − s)².
     pub fn stiffness(&self) -> PlaneMatrix {
-        self.integral(|of_place| {
-            let [bending, shear] = [of_place.curvature, of_place.slope - of_place.turn];
+        self.integral(|at| {
+            let [bending, shear] = [at.curvature, at.slope - at.turn];
             bending * bending.transpose() * self.bending + shear * shear.transpose() * self.shear
         })
     }
 
-    /// Mass of the deflection.
+    /// Translational mass matrix.
     pub fn translational_mass(&self) -> PlaneMatrix {
-        self.integral(|of_place| {
-            of_place.deflection * of_place.deflection.transpose() * self.line_mass
-        })
+        self.integral(|at| at.deflection * at.deflection.transpose() * self.line_mass)
     }
 
-    /// Inertia of the sections' turn about a diameter. Twice of it, between the planes, is the gyroscopic matrix
-    /// per rad/s of spin: a round section's inertia about its axis is twice that about a diameter.
+    /// Rotary mass matrix for section rotation about a diameter. Twice this matrix couples the two bending planes as
+    /// the gyroscopic matrix per rad/s of spin, because the polar inertia of a circular section is twice the diametral
+    /// one.
     pub fn rotary_mass(&self) -> PlaneMatrix {
-        self.integral(|of_place| of_place.turn * of_place.turn.transpose() * self.line_inertia)
+        self.integral(|at| at.turn * at.turn.transpose() * self.line_inertia)
     }
 
-    /// Over the stretch at its stations: stiffness (N/m) and mass (kg) of a bar.
+    /// Axial stiffness (N/m) and mass (kg) of a bar over the axial displacements of the nodes.
     pub fn bar(&self) -> [SMatrix<f64, NODES, NODES>; 2] {
         let mut matrices = [SMatrix::zeros(); 2];
         for (place, weight) in GAUSS {
@@ -148,39 +147,39 @@ impl Element {
         matrices
     }
 
-    fn integral(&self, of: impl Fn(&Shapes) -> PlaneMatrix) -> PlaneMatrix {
+    fn integral(&self, of: impl Fn(&ShapeFunctions) -> PlaneMatrix) -> PlaneMatrix {
         let mut sum = PlaneMatrix::zeros();
         for (place, weight) in GAUSS {
-            sum += of(&Shapes::at(place, self.length)) * (weight * self.length);
+            sum += of(&ShapeFunctions::at(place, self.length)) * (weight * self.length);
         }
         sum
     }
 }
 
-/// ∫ w′² between each station of an element of `length` (m) and the next, m: half of it is by how much the two come nearer
-/// to each other along the axis as the shaft bends and does not stretch.
+/// ∫ w′² between each pair of neighbouring nodes of an element of `length` (m), m: half of it is their axial approach
+/// when the shaft bends without stretching.
 pub fn shortening(length: f64) -> [PlaneMatrix; NODES - 1] {
     let part = 1.0 / (NODES - 1) as f64;
     std::array::from_fn(|interval| {
         let mut sum = PlaneMatrix::zeros();
         for (place, weight) in GAUSS {
-            let slope = Shapes::at((interval as f64 + place) * part, length).slope;
+            let slope = ShapeFunctions::at((interval as f64 + place) * part, length).slope;
             sum += slope * slope.transpose() * (weight * part * length);
         }
         sum
     })
 }
 
-/// What a unit of each coordinate does at one place.
-struct Shapes {
+/// Shape functions at one position: contribution of each unit coordinate.
+struct ShapeFunctions {
     deflection: PlaneVector,
     slope: PlaneVector,
     turn: PlaneVector,
     curvature: PlaneVector,
 }
 
-impl Shapes {
-    fn at(place: f64, length: f64) -> Shapes {
+impl ShapeFunctions {
+    fn at(place: f64, length: f64) -> ShapeFunctions {
         let [shapes, slopes] = lagrange(place);
         let spread = |values: [f64; NODES], first: usize, factor: f64| {
             let mut vector = PlaneVector::zeros();
@@ -189,7 +188,7 @@ impl Shapes {
             }
             vector
         };
-        Shapes {
+        ShapeFunctions {
             deflection: spread(shapes, 0, 1.0),
             slope: spread(slopes, 0, 1.0 / length),
             turn: spread(shapes, 1, 1.0),
@@ -198,7 +197,7 @@ impl Shapes {
     }
 }
 
-/// Polynomials that are 1 at one station and 0 at the others, and their derivatives, at `place` (0 to 1).
+/// Lagrange polynomials of the nodes and their derivatives at `place` (0 to 1).
 fn lagrange(place: f64) -> [[f64; NODES]; 2] {
     let node = |i: usize| i as f64 / (NODES - 1) as f64;
     let others = |i: usize| (0..NODES).filter(move |&j| j != i);
@@ -216,7 +215,8 @@ fn lagrange(place: f64) -> [[f64; NODES]; 2] {
     [shape, slope]
 }
 
-/// Gauss' five places in 0 to 1, with their weights: exact to degree nine, the masses have eight.
+/// Five-point Gauss–Legendre rule on [0, 1]: points and weights. Exact to degree nine; the mass matrices have degree
+/// eight.
 const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_24),

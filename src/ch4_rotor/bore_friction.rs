@@ -1,90 +1,88 @@
-//! Friction between a bore and the outer race in it (4.2.4.2).
+//! Friction between a housing bore and the outer race (4.2.4.2).
 //!
-//! At every node of the bore that touches, a spring in the tangent plane joins the node to the race's surface. The
-//! friction coefficient grows with the spring's stretch up to the one of slipping, and stays there: the force is the
-//! coefficient times the normal load, against the stretch.
+//! At every contact node of the bore, a tangential spring connects the node to the race's surface. The friction
+//! coefficient is proportional to the spring's stretch up to the slip limit and constant beyond it. The force is the
+//! coefficient times the normal load, opposite to the stretch.
 //!
-//! The source calls the spring's stiffness a large penalty and prints no number. Here it is said by the stretch at
-//! which slip begins, and the spring is never stiffer than the contact is along its normal: under loads above
-//! `stiffness × stretch / coefficient` slip begins later. So a step that is stable with the contact closed is stable
-//! with its friction.
+//! The dissertation describes the spring stiffness as a large penalty and gives no value. Here it is set by the stretch
+//! at which slip begins. The spring is never stiffer than the normal contact: at loads above `stiffness × stretch /
+//! coefficient` slip begins at a larger stretch. A time step that is stable for the normal contact is therefore stable
+//! with friction.
 //!
-//! A force that goes with load times stretch is no gradient. Pressing harder on a stretched spring stores
-//! energy in it that no motion along the surface has put there, and easing it takes some out: what two surfaces do to
-//! each other is what is stored and lost, less that ([`FrictionUpdate::load_work`]). Where long springs hold a race against a
-//! torque, whose radial motion changes their loads, this pushes it on in circles: a share c of what slips makes its swing grow by
-//! up to ½ μ c of the swing's own rate. Springs as stiff as the contact know of no load until they slip.
+//! A force proportional to load times stretch is not conservative. Raising the load on a stretched spring stores energy
+//! without tangential displacement, lowering it releases energy; the energy balance subtracts this as
+//! [`FrictionUpdate::load_work`]. Where long springs hold a race against a torque, its radial oscillation changes their
+//! loads and can be self-excited: if a fraction c of the contact slips, the oscillation grows at up to ½ μ c of its own
+//! frequency. Springs as stiff as the contact do not depend on the load until they slip.
 
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, scale, sub};
 
-/// What the friction of a bore is.
+/// Friction law of a bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoreFriction {
-    /// Of slipping.
+    /// Coefficient of sliding friction.
     pub coefficient: f64,
-    /// Of a spring at which it slips, m.
+    /// Stretch of a spring at which it slips, m.
     pub stretch: f64,
 }
 
-/// Friction coefficient of slipping in 4.2.4.2.
+/// Coefficient of sliding friction in 4.2.4.2.
 pub const COEFFICIENT: f64 = 0.6;
-/// Stretch at which slip begins, m. The source states none, but that the way is to be as short as can be: at its
-/// contact stiffness by area springs are as stiff as the contact from 0.042 MPa on.
+/// Stretch at which slip begins, m. The dissertation only requires it to be as small as possible. With its
+/// area-weighted contact stiffness, springs are as stiff as the contact from 0.042 MPa on.
 pub const STRETCH: f64 = 1e-10;
 
-/// The spring of a node: its history. All components are along the race's own axes, so that a motion of both
-/// bodies together is none to it.
+/// State of the friction spring of a node. All components are in the race's own axes, so that a common rigid motion of
+/// both bodies does not change it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spring {
-    /// Where on the race its end is held, m.
+    /// Position of the spring's end on the race, m.
     pub anchor: Vec3,
-    /// Of the node from there along the surface, m.
+    /// Tangential displacement of the node from the anchor, m.
     pub stretch: Vec3,
-    /// N/m; zero where the node did not touch.
+    /// N/m; zero if the node had no contact.
     pub stiffness: f64,
 }
 
 impl Spring {
-    /// J.
+    /// Stored energy, J.
     pub fn energy(&self) -> f64 {
         0.5 * self.stiffness * dot(self.stretch, self.stretch)
     }
 
-    /// Of the node on the race, N.
+    /// Force of the node on the race, N.
     pub fn force(&self) -> Vec3 {
         scale(self.stretch, self.stiffness)
     }
 }
 
-/// A spring after a step, and what happened in it.
+/// Spring after a step, and the energy exchanged in the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionUpdate {
     pub spring: Spring,
     pub slips: bool,
-    /// Of slipping, J.
+    /// Heat dissipated by slip, J.
     pub heat: f64,
-    /// What a changing normal load has stored in the spring, J; negative where it was eased.
+    /// Energy stored in the spring by a changing normal load, J; negative if the load decreased.
     pub load_work: f64,
 }
 
 impl BoreFriction {
-    /// Stretch at which slip begins under a normal load (N), with a contact of this stiffness (N/m), m.
+    /// Stretch at which slip begins under a normal load (N) with a normal contact stiffness (N/m), m.
     pub fn slip_stretch(&self, load: f64, normal_stiffness: f64) -> f64 {
         self.stretch.max(self.coefficient * load / normal_stiffness)
     }
 
-    /// No spring is stiffer than this where the contact is as stiff (N/m) along its normal, N/m.
+    /// Upper bound of the spring stiffness for a normal contact stiffness (N/m), N/m.
     pub fn stiffest(&self, normal_stiffness: f64) -> f64 {
         if self.coefficient == 0.0 { 0.0 } else { normal_stiffness }
     }
 
-    /// The spring of a node that touches at `place` (m, from the race's centre) where the surface has this normal,
-    /// under a normal load (N) that is at most what a contact of this stiffness (N/m) made of it. `before` is the spring a step
-    /// ago.
+    /// Spring of a contact node at `place` (m, from the race's centre) with surface normal `normal`. The normal load
+    /// (N) must not exceed that of a contact with `normal_stiffness` (N/m). `before` is the spring one step earlier.
     ///
-    /// Work is summed by the trapezium rule over the step, which is how central differences move what it is done
-    /// on: the force times the motion along the surface is then the change of the energy and the heat less the work of
-    /// the load, to rounding.
+    /// Work is summed by the trapezium rule over the step, consistent with central differences: force times tangential
+    /// displacement equals the change of energy plus heat minus `load_work`, to rounding.
     pub fn update(
         &self,
         before: &Spring,

@@ -1,2 +1,2 @@
-//! Chapter 5: the cage and what watches it. Laws of the telemeter on a cage.
+//! Chapter 5: monitoring of the cage by a telemeter.
 pub mod telemeter;

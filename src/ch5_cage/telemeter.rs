@@ -1,24 +1,24 @@
-//! Telemeter on a cage (5.2.1): a loop with a capacitor that moves with the cage, coupled to a loop at rest beside it.
+//! Cage telemeter (5.2.1): a loop with a capacitor that moves with the cage, coupled to a fixed transceiver loop.
 //!
-//! The source measures the reflection coefficient S₁₁ of the loop at rest and prints no formula. Here both loops are
-//! circles of thin wire, the inner one with its capacitor a resonator, and
+//! The dissertation measures the reflection coefficient S₁₁ of the fixed loop and prints no formula. Here both loops
+//! are circles of thin wire; the loop on the cage and its capacitor form a resonator:
 //!
 //! Z = R₂ + jωL₂ + ω²M²/(R₁ + jωL₁ + 1/(jωC)), S₁₁ = (Z − 50 Ω)/(Z + 50 Ω).
 //!
-//! The only thing that motion changes is the mutual inductance M. Metal around the loops is left out.
+//! Motion changes only the mutual inductance M. Metal around the loops is neglected.
 
 use crate::ch2_housing::bearing::elliptic::{integral_b, integral_d};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale};
 use core::f64::consts::{PI, TAU};
 
-/// μ₀, H/m.
+/// Permeability of vacuum μ₀, H/m.
 pub const PERMEABILITY: f64 = 4e-7 * PI;
-/// Of copper at 20 °C, Ω·m.
+/// Resistivity of copper at 20 °C, Ω·m.
 pub const COPPER: f64 = 1.68e-8;
-/// What network analysers end in, Ω.
+/// Reference impedance of network analysers, Ω.
 pub const REFERENCE_IMPEDANCE: f64 = 50.0;
 
-/// Circuits of both loops.
+/// Circuit data of both loops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Telemeter {
     /// Radius of the loop on the cage, m.
@@ -27,15 +27,15 @@ pub struct Telemeter {
     pub transceiver_radius: f64,
     /// Radius of both wires, m.
     pub wire_radius: f64,
-    /// F.
+    /// Capacitance, F.
     pub capacitance: f64,
-    /// Of the loop on the cage and of the transceiver's, Ω.
+    /// Resistances of the loop on the cage and of the transceiver's loop, Ω.
     pub resistance: [f64; 2],
-    /// At which the signal is probes, Hz.
+    /// Measurement frequency, Hz.
     pub frequency: f64,
 }
 
-/// Inductance of a circle of thin wire that carries its current in its skin, H: μ₀ R (ln(8R/r) − 2).
+/// Inductance of a circular loop of thin wire with skin-effect current, H: μ₀ R (ln(8R/r) − 2).
 pub fn self_inductance(radius: f64, wire_radius: f64) -> f64 {
     PERMEABILITY * radius * (libm::log(8.0 * radius / wire_radius) - 2.0)
 }
@@ -45,19 +45,19 @@ pub fn natural_frequency(radius: f64, wire_radius: f64, capacitance: f64) -> f64
     1.0 / (TAU * (self_inductance(radius, wire_radius) * capacitance).sqrt())
 }
 
-/// Resistance of a circle of copper wire, Ω: (R/r) ρ/δ with δ = √(ρ/(π f μ₀)) where its current flows in a skin thin beside it,
-/// 2ρR/r² of a steady current at least.
+/// Resistance of a circular copper loop, Ω: (R/r) ρ/δ with the skin depth δ = √(ρ/(π f μ₀)), and at least the
+/// direct-current value 2ρR/r².
 pub fn copper_resistance(radius: f64, wire_radius: f64, frequency: f64) -> f64 {
     let skin = (COPPER / (PI * frequency * PERMEABILITY)).sqrt();
     radius / wire_radius * COPPER / skin.min(0.5 * wire_radius)
 }
 
-/// Mutual inductance, H, of a circle of radius `a` (m) about X at the origin and one of radius `b` about the unit
-/// vector `axis` at `centre` (m): the vector potential of the first along the second, in any place and direction.
+/// Mutual inductance, H, of a circle of radius `a` (m) about X at the origin and a circle of radius `b` about the unit
+/// vector `axis` at `centre` (m): the vector potential of the first integrated along the second.
 ///
-/// A_φ = (μ₀/π) a (D − B)/√((a + ρ)² + x²) with the elliptic integrals of k² = 4aρ/((a + ρ)² + x²), from
-/// (1 − k²/2)K − E = k²(D − B)/2. Sums over equal steps round a circle converge faster than any power; steps are halved
-/// until a part of 1e-12 is left, or wires all but touch.
+/// A_φ = (μ₀/π) a (D − B)/√((a + ρ)² + x²) with the elliptic integrals of k² = 4aρ/((a + ρ)² + x²), from (1 − k²/2)K −
+/// E = k²(D − B)/2. The trapezium rule around a circle converges exponentially; the steps are halved until the relative
+/// change is 1e-12, or the limit for nearly touching wires is reached.
 ///
 /// ```
 /// use bearing_dynamics::ch5_cage::telemeter::mutual_inductance;
@@ -92,7 +92,8 @@ pub fn mutual_inductance(a: f64, b: f64, centre: Vec3, axis: Vec3) -> f64 {
     }
 }
 
-/// Vector potential of a circle of radius `a` about X with a current of one ampere at `place`, along `direction`, V·s/m.
+/// Component along `direction` of the vector potential at `place` of a circle of radius `a` about X carrying one
+/// ampere, V·s/m.
 fn potential_along(a: f64, place: Vec3, direction: Vec3) -> f64 {
     let [x, y, z] = place;
     let rho = libm::hypot(y, z);
@@ -106,7 +107,7 @@ fn potential_along(a: f64, place: Vec3, direction: Vec3) -> f64 {
     PERMEABILITY / PI * a * difference / far.sqrt() * around
 }
 
-/// A unit vector across a unit vector.
+/// Unit vector perpendicular to `axis`.
 fn perpendicular(axis: Vec3) -> Vec3 {
     let helper = if axis[1].abs() < 0.6 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
     let across = add_scaled(helper, -dot(helper, axis), axis);
@@ -114,7 +115,7 @@ fn perpendicular(axis: Vec3) -> Vec3 {
 }
 
 impl Telemeter {
-    /// Of the loop on the cage with its capacitor, Hz.
+    /// Natural frequency of the loop on the cage with its capacitor, Hz.
     pub fn natural_frequency(&self) -> f64 {
         natural_frequency(self.radius, self.wire_radius, self.capacitance)
     }
@@ -130,14 +131,14 @@ impl Telemeter {
         [self.resistance[1] + coupled * r, of_transceiver - coupled * x]
     }
 
-    /// |S₁₁|, the part of the amplitude that comes back.
+    /// Magnitude of the reflection coefficient |S₁₁|.
     pub fn reflection(&self, mutual: f64) -> f64 {
         let [r, x] = self.impedance(mutual);
         libm::hypot(r - REFERENCE_IMPEDANCE, x) / libm::hypot(r + REFERENCE_IMPEDANCE, x)
     }
 
-    /// |S₁₁| with the loop on the cage at `centre` (m) about the unit vector `axis`, in axes of the transceiver, which
-    /// lies at the origin about X.
+    /// |S₁₁| for the loop on the cage at `centre` (m) about the unit vector `axis`, in axes of the transceiver, whose
+    /// loop is at the origin about X.
     pub fn signal(&self, centre: Vec3, axis: Vec3) -> f64 {
         self.reflection(mutual_inductance(self.transceiver_radius, self.radius, centre, axis))
     }

@@ -1,7 +1,6 @@
-//! Tetrahedra: forces and masses of elements from a stress function; no material, no mesh.
+//! Tetrahedral elements: nodal forces and masses from a stress function, independent of material and mesh.
 //!
-//! Everything refers to the undeformed state (total Lagrangian): gradients of the shape functions
-//! are taken once.
+//! Total Lagrangian: gradients of the shape functions are computed once in the undeformed state.
 pub mod tet10;
 pub mod tet10_nodal;
 pub mod tet4;
@@ -12,11 +11,13 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ElementError {
     #[error(
-        "its volume is {volume:.3e} m3, not positive: its nodes are in the wrong order or flat"
+        "its volume is {volume:.3e} m3; it must be positive: its nodes are in the wrong order or \
+         in one plane"
     )]
     Volume { volume: f64 },
     #[error(
-        "at quadrature point {point} its map has the determinant {determinant:.3e}: it is folded"
+        "its Jacobian determinant at quadrature point {point} is {determinant:.3e}; it must be \
+         positive: the element is folded"
     )]
     Folded { point: usize, determinant: f64 },
 }

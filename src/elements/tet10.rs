@@ -1,7 +1,7 @@
-//! The ten-node tetrahedron: quadratic displacements, which bend without locking.
+//! Ten-node tetrahedron: quadratic displacements, no locking in bending.
 //!
-//! Nodes as in VTK and Abaqus: four corners, then the middles of the edges 1–2, 2–3, 3–1, 1–4,
-//! 2–4, 3–4. Stiffness by four quadrature points, exact for straight edges under linear stress.
+//! Node order as in VTK and Abaqus: four corners, then the middles of the edges 1–2, 2–3, 3–1, 1–4, 2–4, 3–4. Four
+//! quadrature points for the stiffness, exact for straight edges under linear stress.
 
 use super::ElementError;
 use crate::kinematics::number::Number;
@@ -11,18 +11,18 @@ use crate::kinematics::strain::{
 };
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, scale};
 
-/// Corners that each mid-edge node lies between, from node 5 on.
+/// Corners of the edge of each mid-edge node, from node 5 on.
 pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
 /// Quadrature points of the stiffness.
 pub const POINTS: usize = 4;
 
-/// One quadrature point in the undeformed state.
+/// Quadrature point in the undeformed state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point<T = f64> {
     /// ∂N/∂X of the ten nodes, 1/m.
     pub gradients: [[T; 3]; 10],
-    /// Volume that the point stands for, m³.
+    /// Integration weight, m³.
     pub volume: T,
 }
 
@@ -35,8 +35,7 @@ pub struct Tet10 {
 const NEAR: f64 = 0.138_196_601_125_010_5;
 const FAR: f64 = 0.585_410_196_624_968_5;
 
-/// Shares of the values at the four quadrature points in the linear field through them, at
-/// barycentric coordinates `l`.
+/// Weights that extrapolate linearly from the four quadrature points to barycentric coordinates `l`.
 pub fn from_points(l: &[f64; 4]) -> [f64; POINTS] {
     l.map(|coordinate| (coordinate - NEAR) / (FAR - NEAR))
 }
@@ -60,8 +59,8 @@ pub fn shape_functions(l: &[f64; 4]) -> [f64; 10] {
     n
 }
 
-/// Derivatives of the shape functions along the second, third and fourth barycentric coordinate,
-/// the first one following.
+/// Derivatives of the shape functions by the second, third and fourth barycentric coordinate, with the first one
+/// dependent.
 fn shape_derivatives(l: &[f64; 4]) -> [Vec3; 10] {
     let mut by_coordinate = [[0.0; 4]; 10];
     for i in 0..4 {
@@ -74,10 +73,10 @@ fn shape_derivatives(l: &[f64; 4]) -> [Vec3; 10] {
     by_coordinate.map(|d| [d[1] - d[0], d[2] - d[0], d[3] - d[0]])
 }
 
-/// Gradients of the shape functions and the determinant of the map at one place.
+/// Gradients of the shape functions and the Jacobian determinant at barycentric coordinates `l`.
 fn gradients_at(nodes: &[Vec3; 10], l: &[f64; 4]) -> ([Vec3; 10], f64) {
     let derivatives = shape_derivatives(l);
-    // Columns of the map: ∂X/∂ξ.
+    // Columns of the Jacobian: ∂X/∂ξ.
     let mut map = [[0.0; 3]; 3];
     for (node, derivative) in nodes.iter().zip(&derivatives) {
         for k in 0..3 {
@@ -101,10 +100,10 @@ fn gradients_at(nodes: &[Vec3; 10], l: &[f64; 4]) -> ([Vec3; 10], f64) {
 }
 
 impl Tet10 {
-    /// From the undeformed nodes, m; edges may be curved.
+    /// Element from its undeformed nodes, m; edges may be curved.
     ///
     /// # Errors
-    /// A map that folds at a quadrature point or a corner.
+    /// If the Jacobian determinant is not positive at a quadrature point or a corner.
     pub fn new(nodes: &[Vec3; 10]) -> Result<Tet10, ElementError> {
         for corner in 0..4 {
             let mut l = [0.0; 4];
@@ -145,7 +144,7 @@ impl Tet10 {
         forces
     }
 
-    /// Change of the nodal forces when the displacements change; see
+    /// Linearised change of the nodal forces for a change of the displacements; see
     /// [`super::tet4::Tet4::force_change`].
     #[inline(always)]
     pub fn force_change(
@@ -176,7 +175,7 @@ impl Tet10 {
     }
 }
 
-/// Of one element, or of one a lane.
+/// For one element, or one element per SIMD lane.
 impl<T: Number> Point<T> {
     #[inline(always)]
     pub fn displacement_gradient(&self, displacement: &[[T; 3]; 10]) -> Mat3<T> {
@@ -191,7 +190,7 @@ impl<T: Number> Point<T> {
         h
     }
 
-    /// Adds this point's share of the nodal forces.
+    /// Adds this point's contribution to the nodal forces.
     #[inline(always)]
     pub fn add_forces(
         &self,
@@ -236,9 +235,9 @@ pub fn consistent_mass(nodes: &[Vec3; 10], density: f64) -> [[f64; 10]; 10] {
     mass
 }
 
-/// Lumped masses, kg: the diagonal of the consistent matrix, scaled to the mass of the element
-/// (Hinton, Rock and Zienkiewicz). All are positive, where row sums would give corners negative
-/// ones; for straight edges a corner has 1/36 and a middle 4/27 of the element.
+/// Lumped masses, kg: the diagonal of the consistent matrix, scaled to the mass of the element (Hinton, Rock and
+/// Zienkiewicz). All are positive, unlike row sums, which are negative at corners. For straight edges a corner has 1/36
+/// and a mid-edge node 4/27 of the element's mass.
 pub fn lumped_mass(nodes: &[Vec3; 10], density: f64) -> [f64; 10] {
     let consistent = consistent_mass(nodes, density);
     let total: f64 = consistent.iter().flatten().sum();

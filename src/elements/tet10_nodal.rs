@@ -1,14 +1,13 @@
-//! The ten-node tetrahedron with a continuous mean stress, for solids that hardly change their volume.
+//! Ten-node tetrahedron with a continuous mean stress, for nearly incompressible solids.
 //!
-//! Shear and stretch are taken at each quadrature point; volume is averaged around each corner node, over all
-//! elements that meet there, weighted by the corner's linear shape function, and the mean stress that
-//! follows is linear within an element and the same on both sides of a face. That is the mixed element of
-//! Taylor and Hood with its masses of pressure lumped, so that no pressure is an unknown and the stiffness stays
-//! positive definite. A pointwise volume locks; one for each element (mean dilatation) does not, but its
-//! mean stress jumps from element to element and costs an order of convergence.
+//! The deviatoric strain is evaluated at each quadrature point. The volume ratio is averaged around each corner node
+//! over all adjacent elements, weighted by the corner's linear shape function; the resulting mean stress is linear
+//! within an element and continuous across faces. This is the Taylor–Hood mixed element with a lumped pressure mass
+//! matrix: pressure is not an unknown and the stiffness remains positive definite. A pointwise volume ratio locks. A
+//! volume ratio per element (mean dilatation) does not lock, but its mean stress is discontinuous, which costs one
+//! order of convergence.
 //!
-//! The energy is Σ V W(E) over points plus Σ V U(J̄) over corner nodes, whose derivatives forces and
-//! stiffness are.
+//! The energy is Σ V W(E) over points plus Σ V U(J̄) over corner nodes; forces and stiffness are its derivatives.
 
 use super::tet10::{POINTS, Tet10, stiffness_rule};
 use crate::kinematics::strain::{
@@ -17,13 +16,13 @@ use crate::kinematics::strain::{
 };
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, scale};
 
-/// Components of displacement: three for each of ten nodes.
+/// Displacement components: three for each of ten nodes.
 pub const COMPONENTS: usize = 30;
 
-/// Lower triangle and diagonal are filled; rows and columns are 3 · node + axis.
+/// Lower triangle and diagonal of a stiffness matrix; rows and columns are 3 · node + axis.
 pub type Stiffness = [[f64; COMPONENTS]; COMPONENTS];
 
-/// Strain and J − 1 at every quadrature point; the volume ratio of one that is turned inside out.
+/// Strain and J − 1 at every quadrature point; the volume ratio of an inverted one as error.
 pub fn strains(
     tet: &Tet10,
     displacement: &[Vec3; 10],
@@ -43,8 +42,8 @@ pub fn strains(
     (strains, changes, inverted)
 }
 
-/// Integrals over the element of values at its quadrature points times each corner's shape function; of
-/// 1 they are the corners' shares of the volume, m³.
+/// Integrals over the element of values at its quadrature points times each corner's shape function. For values of 1
+/// they are the corners' tributary volumes, m³.
 pub fn at_corners(tet: &Tet10, values: &[f64; POINTS]) -> [f64; 4] {
     let mut sums = [0.0; 4];
     for (p, point) in tet.points.iter().enumerate() {
@@ -56,15 +55,15 @@ pub fn at_corners(tet: &Tet10, values: &[f64; POINTS]) -> [f64; 4] {
     sums
 }
 
-/// The linear field through values at the corners, at the quadrature points.
+/// Values at the quadrature points of the linear field through corner values.
 pub fn at_points(corners: &[f64; 4]) -> [f64; POINTS] {
     std::array::from_fn(|p| {
         stiffness_rule(p).iter().zip(corners).map(|(share, value)| share * value).sum()
     })
 }
 
-/// Forces on the nodes, N, from the second Piola–Kirchhoff stress without the part of volume and the mean
-/// stress at each point, Pa.
+/// Nodal forces, N, from the second Piola–Kirchhoff stress without its volumetric part and the mean stress at each
+/// point, Pa.
 pub fn nodal_forces(
     tet: &Tet10,
     displacement: &[Vec3; 10],
@@ -88,15 +87,15 @@ pub fn nodal_forces(
     forces
 }
 
-/// What the stiffness needs of the material at one point, Pa.
+/// Material response at one point, Pa.
 #[derive(Clone, Copy, Debug)]
 pub struct Response {
-    /// Second Piola–Kirchhoff stress without the part of volume, and its derivative by the strain.
+    /// Second Piola–Kirchhoff stress without its volumetric part, and its derivative by the strain.
     pub stress: Sym3,
     pub tangent: Tangent,
 }
 
-/// Derivative by the displacements of ∫ J times one corner's shape function, m².
+/// Derivative of ∫ J times one corner's shape function by the displacements, m².
 pub fn volume_slopes(tet: &Tet10, displacement: &[Vec3; 10], corner: usize) -> [Vec3; 10] {
     let mut slopes = [[0.0; 3]; 10];
     for (p, point) in tet.points.iter().enumerate() {
@@ -110,8 +109,8 @@ pub fn volume_slopes(tet: &Tet10, displacement: &[Vec3; 10], corner: usize) -> [
     slopes
 }
 
-/// Derivative of minus the nodal forces by the displacements at given mean stresses (Pa), N/m: all but
-/// what the mean stresses change, U″(J̄)/V times the product of [`volume_slopes`] summed over the
+/// Stiffness at fixed mean stresses (Pa), minus the derivative of the nodal forces by the displacements, N/m. The
+/// missing contribution of the mean stresses is U″(J̄)/V times the product of [`volume_slopes`] summed over the
 /// elements around a corner.
 pub fn stiffness(
     tet: &Tet10,
@@ -126,8 +125,8 @@ pub fn stiffness(
         let strain_rows = point.gradients.map(|gradient| strains_by_node(&f, gradient));
         for b in 0..10 {
             let gradient = point.gradients[b];
-            let pulled = scale(times(&stress, gradient), point.volume);
-            // Stress by the three components of node b, with the volume, and shear counted twice.
+            let traction = scale(times(&stress, gradient), point.volume);
+            // Stress change by the three components of node b, including volume, with shear counted twice.
             let mut by_node = [[0.0; 6]; 3];
             for j in 0..3 {
                 for c in 0..6 {
@@ -137,7 +136,7 @@ pub fn stiffness(
                 }
             }
             for a in b..10 {
-                let geometric = dot(point.gradients[a], pulled);
+                let geometric = dot(point.gradients[a], traction);
                 // Second derivative of J: ε along F(∇Nₐ × ∇N_b).
                 let turned = scale(
                     times(&f, cross(point.gradients[a], gradient)),

@@ -1,4 +1,4 @@
-//! The four-node tetrahedron of the source: one strain, one stress per element.
+//! Four-node tetrahedron of the dissertation: constant strain and stress per element.
 
 use super::ElementError;
 use crate::kinematics::number::Number;
@@ -8,10 +8,10 @@ use crate::kinematics::strain::{
 };
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 
-/// Corner nodes of the faces, each seen anticlockwise from outside; face i lies opposite node i.
+/// Corner nodes of the faces, each anticlockwise seen from outside; face i is opposite node i.
 pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// What an element needs of the undeformed state.
+/// Undeformed geometry of an element.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tet4<T = f64> {
     /// ∂N/∂X of the first three nodes, 1/m; the fourth is minus their sum.
@@ -21,11 +21,11 @@ pub struct Tet4<T = f64> {
 }
 
 impl Tet4 {
-    /// Gradients and volume from the undeformed corners, m. The volume counts as positive when
-    /// (X₂−X₁)·[(X₃−X₁)×(X₄−X₁)] is, the order of Gmsh, Abaqus and VTK.
+    /// Gradients and volume from the undeformed corners, m. The volume is positive if (X₂−X₁)·[(X₃−X₁)×(X₄−X₁)] is, the
+    /// node order of Gmsh, Abaqus and VTK.
     ///
     /// # Errors
-    /// A volume that is not positive.
+    /// If the volume is not positive.
     pub fn new(corners: &[Vec3; 4]) -> Result<Tet4, ElementError> {
         let [a, b, c] = [1, 2, 3].map(|i: usize| sub(corners[i], corners[0]));
         let six_volumes = dot(a, cross(b, c));
@@ -42,10 +42,10 @@ impl Tet4 {
     }
 }
 
-/// Of one element, or of one a lane.
+/// For one element, or one element per SIMD lane.
 impl<T: Number> Tet4<T> {
-    /// Displacement gradient H = Σ u ⊗ ∂N/∂X, the sum of (4.2), from displacements of the first
-    /// three nodes relative to the fourth.
+    /// Displacement gradient H = Σ u ⊗ ∂N/∂X, the sum of (4.2), from displacements of the first three nodes relative to
+    /// the fourth.
     #[inline(always)]
     pub fn displacement_gradient(&self, relative: &[[T; 3]; 3]) -> Mat3<T> {
         let [a, b, c] = &self.gradients;
@@ -60,8 +60,8 @@ impl<T: Number> Tet4<T> {
         [row(0), row(1), row(2)]
     }
 
-    /// Forces on the first three nodes, −V P ∂N/∂X with P = F S, N; the fourth takes minus their
-    /// sum. What (4.6) and (4.7) share out face by face comes to the same (errata: sign).
+    /// Forces on the first three nodes, −V P ∂N/∂X with P = F S, N; the fourth takes minus their sum. Equal to the
+    /// face-by-face distribution of (4.6) and (4.7) (errata: sign).
     #[inline(always)]
     pub fn nodal_forces(
         &self,
@@ -85,8 +85,8 @@ impl<T: Number> Tet4<T> {
 }
 
 impl Tet4 {
-    /// Change of the nodal forces when the displacements change: the tangent stiffness applied to
-    /// `change`, with the sign of forces. The stress must be linear in the strain.
+    /// Linearised change of the nodal forces: tangent stiffness applied to `change`, with the sign of forces. The
+    /// stress must be linear in the strain.
     #[inline(always)]
     pub fn force_change(
         &self,
@@ -109,8 +109,8 @@ impl Tet4 {
         self.along_gradients(&dp)
     }
 
-    /// The same forces by the route of (2.6): Cauchy stress times the area vectors of the deformed
-    /// faces, shared by the nodes of each face. The sign is that of a force on the node (errata).
+    /// Nodal forces by (2.6): Cauchy stress times the area vectors of the deformed faces, shared by the nodes of each
+    /// face. The sign is that of a force on the node (errata).
     pub fn face_forces_deformed(
         &self,
         corners: &[Vec3; 4],
@@ -123,8 +123,8 @@ impl Tet4 {
         share_faces(&place, |area| times(&t, area))
     }
 
-    /// The same forces by the route of (4.6) and (4.7): second Piola–Kirchhoff stress times the
-    /// area vectors of the undeformed faces, pushed forward by F.
+    /// Nodal forces by (4.6) and (4.7): second Piola–Kirchhoff stress times the area vectors of the undeformed faces,
+    /// pushed forward by F.
     pub fn face_forces_undeformed(
         &self,
         corners: &[Vec3; 4],
@@ -142,7 +142,7 @@ impl Tet4 {
         0.25 * density * self.volume
     }
 
-    /// Consistent mass between two nodes, kg: ρV/10 on the diagonal, ρV/20 beside it.
+    /// Consistent mass between two nodes, kg: ρV/10 on the diagonal, ρV/20 off the diagonal.
     pub fn consistent_mass(&self, density: f64, a: usize, b: usize) -> f64 {
         density * self.volume * if a == b { 0.1 } else { 0.05 }
     }
@@ -155,7 +155,7 @@ pub fn relative(displacement: &[Vec3; 4]) -> [Vec3; 3] {
     [sub(a, d), sub(b, d), sub(c, d)]
 }
 
-/// Minus a third of each face's force to each of its nodes.
+/// Distributes minus a third of each face's force to each of its nodes.
 fn share_faces(corners: &[Vec3; 4], traction: impl Fn(Vec3) -> Vec3) -> [Vec3; 4] {
     let mut forces = [[0.0; 3]; 4];
     for face in FACES {

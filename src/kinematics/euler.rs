@@ -4,23 +4,22 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Orientation (body to inertial) whose matrix is the transpose of (2.16), which takes the components of a vector in
-/// the inertial frame to those in the body-fixed frame.
+/// Orientation (body to inertial). Its matrix is the transpose of (2.16), which maps components in the inertial frame
+/// to components in the body-fixed frame.
 ///
 /// `eta` (about X), `xi` (about the once-turned Y) and `lambda` (about the twice-turned Z) in rad.
 pub fn quaternion(eta: f64, xi: f64, lambda: f64) -> UnitQuaternion<f64> {
     about(Vector3::x(), eta) * about(Vector3::y(), xi) * about(Vector3::z(), lambda)
 }
 
-/// Rotation by an angle (rad) about a unit vector.
-///
-/// Sine and cosine are `libm`'s: the system's differ between processors.
+/// Rotation by an angle (rad) about a unit vector. Uses sine and cosine of `libm`, because the system's differ between
+/// processors.
 pub fn about(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
     let (sin, cos) = libm::sincos(0.5 * angle);
     UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, axis * sin))
 }
 
-/// Euler angles `(eta, xi, lambda)` in rad of an orientation; `xi` lies in [-π/2, π/2].
+/// Euler angles `(eta, xi, lambda)` in rad of an orientation; `xi` is in [-π/2, π/2].
 ///
 /// At `xi = ±π/2` the first and third axis coincide and `eta` is set to zero.
 pub fn angles(orientation: &UnitQuaternion<f64>) -> (f64, f64, f64) {

@@ -1,7 +1,7 @@
-//! What laws of a point compute with: one number, or one number a lane for as many points as a vector of the
-//! processor holds. Written once for both, with the same bits lane by lane.
+//! Number type of material laws and kinematics: one number, or a SIMD vector with one number per lane. Both give the
+//! same bits per lane.
 //!
-//! Left to itself the compiler makes vectors of a loop over lanes only while the law in it is short.
+//! Explicit SIMD types are used because the compiler vectorises loops over lanes only for short loop bodies.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use wide::{f64x4, f64x8};
@@ -14,10 +14,10 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A constant.
+    /// Constant value in every lane.
     fn of(value: f64) -> Self;
 
-    /// The same done to each lane.
+    /// Applies a function to each lane.
     fn each(self, of: impl Fn(f64) -> f64) -> Self;
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Where a body-fixed frame sits in its parent frame.
+/// Position and orientation of a body frame in its parent frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Origin of the body frame in the parent frame, m.
@@ -16,17 +16,17 @@ impl Pose {
         Pose { position: Vector3::zeros(), orientation: UnitQuaternion::identity() }
     }
 
-    /// A point given in the body frame, in the parent frame, m.
+    /// Transforms a point from the body frame to the parent frame, m.
     pub fn point_to_parent(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.position + self.orientation * point
     }
 
-    /// A point given in the parent frame, in the body frame, m.
+    /// Transforms a point from the parent frame to the body frame, m.
     pub fn point_to_body(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.orientation.inverse_transform_vector(&(point - self.position))
     }
 
-    /// This pose, given in the frame `parent`, expressed in the frame in which `parent` is given.
+    /// Transforms this pose from the frame `parent` to the frame in which `parent` is expressed.
     pub fn seen_from_parent_of(&self, parent: &Pose) -> Pose {
         Pose {
             position: parent.point_to_parent(&self.position),
@@ -34,7 +34,7 @@ impl Pose {
         }
     }
 
-    /// This pose expressed in `frame`, both being given in the same parent frame.
+    /// Transforms this pose to `frame`; both are expressed in the same parent frame.
     pub fn relative_to(&self, frame: &Pose) -> Pose {
         Pose {
             position: frame.point_to_body(&self.position),

@@ -1,23 +1,22 @@
 //! Deformation at a point of a solid, from the displacement gradient H.
 //!
-//! Strains are made of H itself, never of F − 1: at a strain of 1e-6 that keeps every digit, where
-//! FᵀF − 1 has lost ten. Plain inlined arithmetic without branches, so that it does for
-//! lanes of elements what it does for one, with the same bits.
+//! Strains are computed from H, never from F − 1: FᵀF − 1 loses ten digits at a strain of 1e-6. All functions are
+//! inlined and branch-free, and give the same bits for one element and for SIMD lanes.
 
 use crate::kinematics::number::Number;
 use crate::kinematics::vec3::cross;
 
-/// Rows of a 3 × 3 matrix, of numbers or of lanes.
+/// Rows of a 3 × 3 matrix, of numbers or SIMD lanes.
 pub type Mat3<T = f64> = [[T; 3]; 3];
 
-/// A symmetric tensor: xx, yy, zz, xy, yz, zx.
+/// Symmetric tensor: xx, yy, zz, xy, yz, zx.
 pub type Sym3<T = f64> = [T; 6];
 
-/// A fourth-order tensor that is symmetric in its first and in its last two indices, between pairs
-/// in the order of [`Sym3`]: what takes a change of strain to a change of stress.
+/// Fourth-order tensor from a change of strain to a change of stress: symmetric in its first and in its last two
+/// indices, pairs in the order of [`Sym3`].
 pub type Tangent = [[f64; 6]; 6];
 
-/// The tangent applied to a change of strain; components beside the diagonal count twice.
+/// Product of the tangent and a change of strain; off-diagonal components count twice.
 #[inline(always)]
 pub fn applied(tangent: &Tangent, change: &Sym3) -> Sym3 {
     let mut sum = [0.0; 6];
@@ -33,7 +32,7 @@ pub fn double_dot<T: Number>(a: &Sym3<T>, b: &Sym3<T>) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + T::of(2.0) * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
-/// The full matrix of a symmetric tensor.
+/// Full matrix of a symmetric tensor.
 #[inline(always)]
 pub fn full<T: Number>(s: &Sym3<T>) -> Mat3<T> {
     [[s[0], s[3], s[5]], [s[3], s[1], s[4]], [s[5], s[4], s[2]]]
@@ -49,15 +48,14 @@ pub fn deformation_gradient<T: Number>(h: &Mat3<T>) -> Mat3<T> {
     f
 }
 
-/// Right Cauchy–Green tensor C = FᵀF (2.2), for laws that want C itself; for strains use
-/// [`green_lagrange`].
+/// Right Cauchy–Green tensor C = FᵀF (2.2). For strains use [`green_lagrange`], which keeps full precision.
 #[inline(always)]
 pub fn right_cauchy_green(h: &Mat3) -> Sym3 {
     let e = green_lagrange(h);
     [1.0 + 2.0 * e[0], 1.0 + 2.0 * e[1], 1.0 + 2.0 * e[2], 2.0 * e[3], 2.0 * e[4], 2.0 * e[5]]
 }
 
-/// Green–Lagrange strain (2.3), written in the displacement gradient: E = (H + Hᵀ + HᵀH)/2.
+/// Green–Lagrange strain (2.3) in terms of the displacement gradient: E = (H + Hᵀ + HᵀH)/2.
 #[inline(always)]
 pub fn green_lagrange<T: Number>(h: &Mat3<T>) -> Sym3<T> {
     let half = T::of(0.5);
@@ -72,7 +70,7 @@ pub fn green_lagrange<T: Number>(h: &Mat3<T>) -> Sym3<T> {
     ]
 }
 
-/// Change of [`green_lagrange`] when H changes by `change`: sym(Fᵀ dH).
+/// Linearised change of [`green_lagrange`] for a `change` of H: sym(Fᵀ dH).
 #[inline(always)]
 pub fn green_lagrange_change(h: &Mat3, change: &Mat3) -> Sym3 {
     let f = deformation_gradient(h);
@@ -89,7 +87,7 @@ pub fn green_lagrange_change(h: &Mat3, change: &Mat3) -> Sym3 {
     ]
 }
 
-/// J − 1 with J = det F (3.5), every digit kept at small H.
+/// J − 1 with J = det F (3.5), with full precision at small H.
 #[inline(always)]
 pub fn volume_change<T: Number>(h: &Mat3<T>) -> T {
     let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];

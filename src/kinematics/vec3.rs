@@ -1,7 +1,5 @@
-//! Three-component arithmetic on plain arrays, for loops that run over lanes of bodies.
-//!
-//! Everything is inlined and without branches, so that a loop over lanes becomes vector code with
-//! the same bits as the single call.
+//! Three-component vector arithmetic on plain arrays. All functions are inlined and branch-free, so that loops over
+//! lanes vectorise with the same bits as single calls.
 
 use super::number::Number;
 

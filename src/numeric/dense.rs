@@ -1,4 +1,4 @@
-//! Dense symmetric matrices and their Cholesky factors (faer, one thread).
+//! Dense symmetric matrices and their Cholesky factorisation (faer, one thread).
 
 use crate::numeric::sparse::FactorError;
 use faer::linalg::cholesky::llt::factor::LltError;
@@ -6,7 +6,7 @@ use faer::linalg::solvers::Llt;
 use faer::prelude::{MatMut, Solve};
 use faer::{Mat, Side};
 
-/// A symmetric matrix, all of it stored, column by column.
+/// Symmetric matrix with all entries stored, column by column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DenseSymmetric {
     size: usize,
@@ -14,11 +14,10 @@ pub struct DenseSymmetric {
 }
 
 impl DenseSymmetric {
-    /// From its columns, one after the other; the mean of both triangles is kept. The second value
-    /// is the largest difference between them over the largest entry.
+    /// Matrix from its columns, symmetrised. The second value is the largest asymmetry divided by the largest entry.
     ///
     /// # Panics
-    /// If `values` has not `size` squared of them.
+    /// If `values` does not have `size` squared entries.
     pub fn new(size: usize, mut values: Vec<f64>) -> (DenseSymmetric, f64) {
         assert_eq!(values.len(), size * size, "a square matrix");
         let (mut gap, mut largest) = (0.0f64, 0.0f64);
@@ -43,7 +42,7 @@ impl DenseSymmetric {
         &self.values[column * self.size..(column + 1) * self.size]
     }
 
-    /// y += A x, `x` given on the `picked` columns only.
+    /// y += A x; `x` has one entry for each of the `picked` columns.
     pub fn add_product(&self, picked: &[usize], x: &[f64], y: &mut [f64]) {
         for (&column, &factor) in picked.iter().zip(x) {
             for (y, a) in y.iter_mut().zip(self.column(column)) {
@@ -52,11 +51,10 @@ impl DenseSymmetric {
         }
     }
 
-    /// Cholesky factors of the `picked` rows and columns with `diagonal` (one for each of them)
-    /// added.
+    /// Cholesky factorisation of the `picked` rows and columns with `diagonal` (one entry for each) added.
     ///
     /// # Errors
-    /// A part that is not positive definite.
+    /// If this submatrix is not positive definite.
     pub fn factor(&self, picked: &[usize], diagonal: &[f64]) -> Result<DenseFactor, FactorError> {
         let part = Mat::from_fn(picked.len(), picked.len(), |i, j| {
             let value = self.values[picked[i] + picked[j] * self.size];
@@ -76,7 +74,7 @@ pub struct DenseFactor {
 }
 
 impl DenseFactor {
-    /// Solves in place for `columns` right-hand sides, one after the other in `right`.
+    /// Solves in place for `columns` right-hand sides, stored one after the other in `right`.
     pub fn solve_columns(&self, right: &mut [f64], columns: usize) {
         let rows = right.len() / columns;
         self.numeric.solve_in_place(MatMut::from_column_major_slice_mut(right, rows, columns));

@@ -1,4 +1,4 @@
-//! Numerical tools that know no bearing: profiles over time, the clock of a run, dense and sparse symmetric matrices.
+//! Numerical tools independent of bearings: time profiles, run clock, dense and sparse symmetric matrices.
 
 pub mod clock;
 pub mod dense;

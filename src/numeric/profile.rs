@@ -1,26 +1,26 @@
-//! Loads, speeds and displacements over time.
+//! Time profiles of loads, speeds and displacements.
 
 use std::f64::consts::{PI, TAU};
 
-/// A quantity over time, SI units.
+/// Quantity as a function of time, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
     Constant(f64),
-    /// Straight line from `from` to `to` between `start` and `start + duration`.
+    /// Linear from `from` to `to` between `start` and `start + duration`.
     Ramp {
         from: f64,
         to: f64,
         start: f64,
         duration: f64,
     },
-    /// As `Ramp`, but with zero slope and curvature at both ends: 10τ³ − 15τ⁴ + 6τ⁵.
+    /// Like `Ramp`, with zero slope and curvature at both ends: 10τ³ − 15τ⁴ + 6τ⁵.
     SmoothRamp {
         from: f64,
         to: f64,
         start: f64,
         duration: f64,
     },
-    /// Straight lines between (time, value), constant before the first and after the last.
+    /// Linear interpolation between (time, value) points, constant before the first and after the last.
     Table {
         points: Vec<[f64; 2]>,
     },
@@ -31,7 +31,7 @@ pub enum Profile {
         frequency: f64,
         phase: f64,
     },
-    /// Half a sine wave of height `peak` on top of `base`, from `start` for `duration`.
+    /// Half sine wave of height `peak` added to `base`, from `start` for `duration`.
     HalfSine {
         base: f64,
         peak: f64,
@@ -43,7 +43,7 @@ pub enum Profile {
 impl Profile {
     pub const ZERO: Profile = Profile::Constant(0.0);
 
-    /// The same, larger by `by` at all times.
+    /// The profile with `by` added at all times.
     pub fn shifted(&self, by: f64) -> Profile {
         let mut shifted = self.clone();
         match &mut shifted {
@@ -59,7 +59,7 @@ impl Profile {
         shifted
     }
 
-    /// Whether it is zero at all times, so that it may be left out.
+    /// Returns whether the profile is zero at all times.
     pub fn is_zero(&self) -> bool {
         match self {
             Profile::Constant(value) => *value == 0.0,
@@ -72,7 +72,7 @@ impl Profile {
         }
     }
 
-    /// Frequency of one that repeats itself, Hz; 0 of all others.
+    /// Frequency of a periodic profile, Hz; 0 for all others.
     pub fn cycles(&self) -> f64 {
         match self {
             Profile::Harmonic { frequency, .. } => frequency.abs(),
@@ -80,7 +80,7 @@ impl Profile {
         }
     }
 
-    /// The same with its time counted from `t0` (s).
+    /// The profile with its time counted from `t0` (s).
     pub fn from_time(&self, t0: f64) -> Profile {
         let mut later = self.clone();
         match &mut later {
@@ -116,7 +116,7 @@ impl Profile {
         }
     }
 
-    /// Rate of change at time `t`, per second.
+    /// Rate of change at time `t` (s), per second.
     pub fn rate(&self, t: f64) -> f64 {
         match self {
             Profile::Constant(_) => 0.0,
@@ -142,7 +142,7 @@ impl Profile {
         }
     }
 
-    /// Second derivative at time `t`, per second²; jumps of the slope are not in it.
+    /// Second derivative at time `t` (s), per second²; jumps of the slope are not included.
     pub fn acceleration(&self, t: f64) -> f64 {
         match self {
             Profile::Constant(_) | Profile::Ramp { .. } | Profile::Table { .. } => 0.0,
@@ -164,12 +164,12 @@ impl Profile {
         }
     }
 
-    /// ∫ value dt from 0 to `t`, in closed form: the angle that a speed has turned.
+    /// ∫ value dt from 0 to `t` (s), in closed form: the angle of rotation for a speed.
     pub fn integral(&self, t: f64) -> f64 {
         match self {
             Profile::Constant(value) => value * t,
             Profile::Ramp { from, to, start, duration } => {
-                // Of the fraction f = (t − start)/duration: f²/2, and 1/2 + (f − 1) beyond.
+                // In terms of the fraction f = (t − start)/duration: f²/2 within the ramp, and 1/2 + (f − 1) beyond.
                 let rise = ramp_integral(t, *start, *duration, |f| 0.5 * f * f);
                 from * t + (to - from) * rise
             }
@@ -180,8 +180,8 @@ impl Profile {
             Profile::Table { points } => table_integral(points, t) - table_integral(points, 0.0),
             Profile::Harmonic { mean, amplitude, frequency, phase } => {
                 let pulsation = TAU * frequency;
-                let swing = libm::cos(*phase) - libm::cos(pulsation * t + phase);
-                mean * t + amplitude / pulsation * swing
+                let cosines = libm::cos(*phase) - libm::cos(pulsation * t + phase);
+                mean * t + amplitude / pulsation * cosines
             }
             Profile::HalfSine { base, peak, start, duration } => {
                 let area = |t: f64| {
@@ -193,7 +193,7 @@ impl Profile {
         }
     }
 
-    /// Times at which value or slope jumps; a step should end there.
+    /// Times at which value or slope jumps, s; steps should end there.
     pub fn corners(&self) -> Vec<f64> {
         match self {
             Profile::Constant(_) | Profile::Harmonic { .. } => Vec::new(),
@@ -205,12 +205,12 @@ impl Profile {
     }
 }
 
-/// Whether a time is within a stretch; its end belongs to what follows, as a run that has come there goes on.
+/// Returns whether `t` is within an interval. The end is excluded, because a run that has reached it continues beyond.
 fn is_inside(t: f64, start: f64, duration: f64) -> bool {
     t >= start && t < start + duration
 }
 
-/// How much of a ramp lies behind, 0 to 1; a ramp of no duration is a step.
+/// Completed fraction of a ramp, 0 to 1; a ramp of zero duration is a step.
 fn fraction(t: f64, start: f64, duration: f64) -> f64 {
     if duration > 0.0 {
         ((t - start) / duration).clamp(0.0, 1.0)
@@ -221,14 +221,14 @@ fn fraction(t: f64, start: f64, duration: f64) -> f64 {
     }
 }
 
-/// ∫ of [`fraction`] from 0 to `t`, from its integral over the fraction itself: `part(1)` is 1/2.
+/// ∫ of [`fraction`] from 0 to `t`; `part` is its integral over the fraction itself, with `part(1)` = 1/2.
 fn ramp_integral(t: f64, start: f64, duration: f64, part: impl Fn(f64) -> f64) -> f64 {
     let end = start + duration;
     let from_start = |t: f64| duration * part(fraction(t, start, duration)) + (t - end).max(0.0);
     from_start(t) - from_start(0.0)
 }
 
-/// ∫ of a table from its first point to `t`.
+/// Integral of a table from its first point to `t`.
 fn table_integral(points: &[[f64; 2]], t: f64) -> f64 {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return 0.0 };
     let mut sum = first[1] * (t - first[0]).min(0.0) + last[1] * (t - last[0]).max(0.0);

@@ -1,19 +1,18 @@
-//! Contact of two balls that no cage keeps apart: Hertz's law for equal spheres, with friction.
+//! Ball–ball contact in a bearing without a cage: Hertz's law for equal spheres, with friction.
 //!
-//! The source's bearings keep their balls apart; without a cage they run into each other, and in a
-//! full complement they touch all the time. Two rolling balls slide on each other at twice their
-//! surface speed, so that friction is Coulomb's, rounded off as elsewhere.
+//! The dissertation has no ball–ball contact. Two rolling balls slide on each other at twice their surface speed, so
+//! friction is regularised Coulomb friction.
 
 use super::contact::normal_load;
 use super::slices::Motion;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 
-/// How two balls push and rub.
+/// Normal and friction law of a ball–ball contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallContactLaw {
     /// K of F = K δ^{3/2}, N/m^1.5.
     pub stiffness: f64,
-    /// Coulomb coefficient, rounded off below `regularisation_speed` (m/s).
+    /// Coulomb coefficient, regularised below `regularisation_speed` (m/s).
     pub friction: f64,
     pub regularisation_speed: f64,
 }
@@ -24,7 +23,7 @@ pub fn equal_spheres(modulus: f64, radius: f64) -> f64 {
     4.0 / 3.0 * (0.5 * modulus) * (0.5 * radius).sqrt()
 }
 
-/// Largest pressure between two balls of a `radius` (m) under a load (N), Pa: p = 3F/(2π a²) with a² = R δ,
+/// Peak Hertz pressure between two balls of `radius` (m) under `load` (N), Pa: p = 3F/(2π a²) with a² = R δ,
 /// R = radius/2 and δ = (F/K)^{2/3}.
 pub fn peak_pressure(law: &BallContactLaw, radius: f64, load: f64) -> f64 {
     if load <= 0.0 {
@@ -34,7 +33,7 @@ pub fn peak_pressure(law: &BallContactLaw, radius: f64, load: f64) -> f64 {
     1.5 * load / (std::f64::consts::PI * 0.5 * radius * overlap)
 }
 
-/// Two neighbouring balls, inertial axes.
+/// Contact of two neighbouring balls, inertial axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BallContact {
     /// δ, m; zero where the balls are apart.
@@ -43,24 +42,25 @@ pub struct BallContact {
     pub normal_load: f64,
     /// Unit vector from the first ball to the second.
     pub normal: Vec3,
-    /// From the first ball's centre to the contact point; the second one's arm is the opposite.
+    /// Vector from the first ball's centre to the contact point, m; the second ball's arm is its negative.
     pub arm: Vec3,
-    /// Normal force and friction on the second ball; the first feels the opposite.
+    /// Normal force and friction on the second ball, N; the first ball takes the opposite force.
     pub force: Vec3,
-    /// Sliding of the second ball over the first, m/s.
+    /// Sliding velocity of the second ball over the first, m/s.
     pub slip: Vec3,
     /// Power of the friction, W, ≤ 0.
     pub power: f64,
 }
 
-/// Whether balls of a `radius` (m) are clear of each other, from their centres; NaN is not, and is found later.
+/// Returns whether two balls of `radius` (m) do not touch, from their centres (m); `false` for NaN, which is caught
+/// later.
 #[inline]
 pub fn are_apart(radius: f64, one: Vec3, other: Vec3) -> bool {
     let between = sub(other, one);
     dot(between, between) >= 4.0 * radius * radius
 }
 
-/// Contact of two balls of a `radius` (m); `None` where they are apart.
+/// Contact of two balls of `radius` (m); `None` if they do not touch.
 #[inline]
 pub fn ball_contact(
     law: &BallContactLaw,
@@ -76,7 +76,7 @@ pub fn ball_contact(
     let overlap = 2.0 * radius - distance;
     let load = normal_load(law.stiffness, overlap);
     let normal = scale(between, 1.0 / distance);
-    // The overlap is shared in halves.
+    // The overlap is shared equally.
     let arm = scale(normal, radius - 0.5 * overlap);
     let on_other = sub(other.velocity, cross(other.spin, arm));
     let on_one = add(one.velocity, cross(one.spin, arm));

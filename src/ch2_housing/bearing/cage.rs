@@ -1,4 +1,4 @@
-//! The rigid cage: balls in pockets, the ring on its guiding race.
+//! Contacts of the rigid cage: balls in pockets, ring on its guiding race.
 
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, scale, sub};
 
@@ -55,7 +55,7 @@ pub enum Pocket {
     Spherical,
 }
 
-/// What keeps the ring in place.
+/// Guidance of the cage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guidance {
     OuterRace,
@@ -64,7 +64,7 @@ pub enum Guidance {
 }
 
 impl Guidance {
-    /// As scenes have it.
+    /// Name used in scene files.
     pub fn name(self) -> &'static str {
         match self {
             Guidance::OuterRace => "outer-race",
@@ -79,40 +79,40 @@ impl Guidance {
 pub struct CageContacts {
     pub pocket: Pocket,
     pub pocket_radius: f64,
-    /// Distance of the pockets' centres from the cage's axis.
+    /// Distance of the pocket centres from the cage axis.
     pub pocket_pitch_radius: f64,
     pub guidance: Guidance,
     /// Inner and outer radius of the ring.
     pub ring: [f64; 2],
     /// Guiding surface of the cage: its outer or inner radius.
     pub guide_radius: f64,
-    /// Radial gap between cage and guiding race when concentric.
+    /// Radial gap between cage and guiding race when they are concentric.
     pub race_clearance: f64,
     /// Axial length of the cage.
     pub length: f64,
     pub force: CageForce,
-    /// Coulomb coefficient (5.3.2: 0.1), rounded off below `regularisation_speed` (m/s).
+    /// Coulomb coefficient (5.3.2: 0.1), regularised below `regularisation_speed` (m/s).
     pub friction: f64,
     pub regularisation_speed: f64,
 }
 
-/// A cage contact: force on the *other* body (ball or race), at a point, inertial axes.
+/// Cage contact in inertial axes: force on the *other* body (ball or race) at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CageContact {
     /// m; negative is a gap.
     pub penetration: f64,
     pub normal_load: f64,
-    /// Normal force and friction on the other body; the cage feels the opposite at `point`.
+    /// Normal force and friction on the other body, N; the cage takes the opposite force at `point`.
     pub force: Vec3,
     pub point: Vec3,
-    /// Unit vector of the normal force on the other body, and its sliding over the cage (m/s).
+    /// Unit vector of the normal force on the other body, and its sliding velocity over the cage (m/s).
     pub push: Vec3,
     pub slip: Vec3,
     /// Power of the friction, W, ≤ 0.
     pub power: f64,
 }
 
-/// Position and motion of a body with an axis.
+/// Position and velocity of a body with an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisMotion {
     pub position: Vec3,
@@ -127,7 +127,7 @@ fn velocity_at(body: &AxisMotion, point: Vec3) -> Vec3 {
     add_scaled(body.velocity, 1.0, turning)
 }
 
-/// Contact at `point` with the unit vector `push` from the cage towards the other body's inside.
+/// Contact at `point`; `push` is the unit vector from the cage into the other body.
 fn contact(
     law: &CageContacts,
     cage: &AxisMotion,
@@ -156,8 +156,8 @@ fn contact(
     }
 }
 
-/// Ball against the wall of its pocket, whose direction from the cage's axis is `towards`
-/// (a unit vector across the cage's axis).
+/// Contact of a ball with its pocket; `towards` is the unit vector from the cage axis to the pocket, perpendicular to
+/// the axis.
 pub fn pocket_contact(
     law: &CageContacts,
     cage: &AxisMotion,
@@ -181,7 +181,7 @@ pub fn pocket_contact(
     contact(law, cage, velocity_at(ball, point), point, scale(out, -1.0), penetration)
 }
 
-/// Cage ring against its guiding race, at the end plane `side` (−1 or +1) of the cage.
+/// Contact of the cage ring with its guiding race, at the end plane `side` (−1 or +1) of the cage.
 pub fn guide_contact(
     law: &CageContacts,
     cage: &AxisMotion,
@@ -197,7 +197,7 @@ pub fn guide_contact(
         return CageContact { penetration, ..CageContact::default() };
     }
     let direction = scale(across, 1.0 / eccentricity);
-    // An outer race is touched on the side the cage has moved to, an inner race on the other.
+    // An outer race is touched on the side to which the cage is displaced, an inner race on the opposite side.
     let (touching, push) = match law.guidance {
         Guidance::InnerRace => (-1.0, direction),
         _ => (1.0, direction),

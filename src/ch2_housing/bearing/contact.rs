@@ -1,8 +1,7 @@
-//! Contact of a ball with the groove of a race: overlap and the normal load of (2.1).
+//! Contact of a ball with a raceway groove: overlap and normal load (2.1).
 //!
-//! A raceway is a torus. Observed in the meridian plane of the race that holds the ball centre, the
-//! ball touches a circular arc from inside, so the overlap depends on the ball's axial and radial
-//! position alone; the contact angle follows from them.
+//! A raceway is a torus. In the meridian plane through the ball centre, the ball touches a circular arc from inside, so
+//! the overlap depends only on the ball's axial and radial position. The contact angle follows from both.
 
 use super::geometry::Raceway;
 use crate::kinematics::Pose;
@@ -13,14 +12,14 @@ use nalgebra::Vector3;
 /// ```
 /// use bearing_dynamics::ch2_housing::bearing::contact::normal_load;
 /// assert_eq!(normal_load(4e10, 1e-4), 4e10 * 1e-4 * 1e-4_f64.sqrt());
-/// assert_eq!(normal_load(4e10, -1e-6), 0.0); // a gap carries nothing
+/// assert_eq!(normal_load(4e10, -1e-6), 0.0); // a gap has no load
 /// ```
 #[doc(alias = "2.1")]
 #[doc(alias = "4.1")]
 #[doc(alias = "5.1")]
 #[inline]
 pub fn normal_load(stiffness: f64, overlap: f64) -> f64 {
-    // Written so that NaN passes through and is caught, not turned into a missing contact.
+    // NaN passes through, so that it is caught instead of becoming a missing contact.
     if overlap <= 0.0 { 0.0 } else { stiffness * overlap * overlap.sqrt() }
 }
 
@@ -36,7 +35,7 @@ pub fn strain_energy(stiffness: f64, overlap: f64) -> f64 {
     if overlap <= 0.0 { 0.0 } else { 0.4 * stiffness * overlap * overlap * overlap.sqrt() }
 }
 
-/// A ball in a groove, seen in the meridian plane of the race.
+/// Contact of a ball with a groove in the meridian plane of the race.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeridianContact {
     /// δ, m; negative is a gap.
@@ -47,7 +46,7 @@ pub struct MeridianContact {
     pub normal: [f64; 2],
 }
 
-/// Overlap of a ball whose centre lies at `axial`, `radial` (m) in the race's frame.
+/// Contact of a ball whose centre is at `axial`, `radial` (m) in the race's frame.
 #[inline]
 pub fn meridian_contact(
     axial: f64,
@@ -58,8 +57,8 @@ pub fn meridian_contact(
     let from_centre = [axial - raceway.centre_axial, radial - raceway.centre_radius];
     let centre_distance =
         (from_centre[0] * from_centre[0] + from_centre[1] * from_centre[1]).sqrt();
-    // On the centre of curvature there is no direction, and no contact either, since a groove is
-    // wider than its ball; any unit vector will do.
+    // On the centre of curvature the direction is undefined but there is no contact, because a groove is wider than its
+    // ball: any unit vector will do.
     let normal = if centre_distance > 0.0 {
         [from_centre[0] / centre_distance, from_centre[1] / centre_distance]
     } else {
@@ -69,19 +68,18 @@ pub fn meridian_contact(
     MeridianContact { overlap, centre_distance, normal }
 }
 
-/// Force of a race on a ball, both anywhere in space.
+/// Force of a race on a ball in any position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrooveForce {
     /// δ, m; negative is a gap.
     pub overlap: f64,
     /// N.
     pub normal_load: f64,
-    /// Force on the ball, N; the race feels the opposite force, on the same line of action
-    /// through the ball centre.
+    /// Force on the ball, N; the race takes the opposite force on the same line of action through the ball centre.
     pub force_on_ball: Vector3<f64>,
 }
 
-/// Normal force between a ball and a race, in the frame in which both are given.
+/// Normal force between a ball and a race, in the common frame of `ball_centre` and the race's pose.
 ///
 /// `stiffness` is K_H in N/m^1.5. The race's rotation about its own axis has no influence.
 pub fn groove_force(
@@ -99,12 +97,12 @@ pub fn groove_force(
     let contact = meridian_contact(axial, radial, raceway, ball_radius);
     let load = normal_load(stiffness, contact.overlap);
     let normal = axis * contact.normal[0] + radial_arm * (contact.normal[1] / radial);
-    // A ball on the race's axis has no radial direction, and is far from any groove.
+    // A ball on the race's axis has no radial direction, but is far from any groove.
     let force_on_ball = if load == 0.0 { Vector3::zeros() } else { normal * -load };
     GrooveForce { overlap: contact.overlap, normal_load: load, force_on_ball }
 }
 
-/// Loss in a normal contact. The source states none.
+/// Damping in a normal contact. The dissertation specifies none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactDamping {
     None,
@@ -114,21 +112,21 @@ pub enum ContactDamping {
     },
 }
 
-/// What a contact between a ball and one race needs to know.
+/// Geometry and stiffness of the contact between a ball and one race.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RaceLaw {
     /// Circle of the groove's centres of curvature in the race's frame, m.
     pub centre_axial: f64,
     pub centre_radius: f64,
-    /// Groove radius less ball radius, m.
+    /// Groove radius minus ball radius, m.
     pub room: f64,
     /// K_H, N/m^1.5.
     pub stiffness: f64,
-    /// Semi-major axis of the contact ellipse over √δ, m^0.5.
+    /// Semi-major axis of the contact ellipse divided by √δ, m^0.5.
     pub semi_major_factor: f64,
-    /// Semi-major axis over the semi-minor one.
+    /// Ratio of the semi-major to the semi-minor axis.
     pub ellipticity: f64,
-    /// On which side of its circle the groove has material: +1 outside (outer race), −1 inside.
+    /// Side of the circle on which the groove has material: +1 outside (outer race), −1 inside (inner race).
     pub outward: f64,
 }
 
@@ -145,9 +143,8 @@ pub struct RaceContact {
     pub closing_speed: f64,
 }
 
-/// Overlap and its rate; costs the distance test and is all that an idle pair costs.
-///
-/// `arm` and `velocity` are the ball centre's position and velocity relative to the race's centre.
+/// Overlap and its rate. `arm` and `velocity` are the position (m) and velocity (m/s) of the ball centre relative to
+/// the race's centre.
 #[inline(always)]
 pub fn race_contact(
     arm: [f64; 3],
@@ -163,7 +160,7 @@ pub fn race_contact(
     let outward = scale(across, 1.0 / radial);
     let from_axial = axial - law.centre_axial;
     let from_radial = radial - law.centre_radius;
-    // No groove closes over its ball: past 90° its walls go on straight. NaN stays.
+    // Beyond 90° the groove walls continue straight, so that no groove encloses its ball. NaN passes through.
     let from_radial = if law.outward * from_radial < 0.0 { 0.0 } else { from_radial };
     let distance = (from_axial * from_axial + from_radial * from_radial).sqrt();
     let per_distance = 1.0 / if distance > 0.0 { distance } else { 1.0 };
@@ -178,7 +175,7 @@ pub fn race_contact(
     }
 }
 
-/// Normal load with damping: K δ^{3/2} (1 + `factor` δ̇), never a pull.
+/// Normal load with damping, N: K δ^{3/2} (1 + `factor` δ̇), never negative.
 #[inline(always)]
 pub fn damped_load(stiffness: f64, overlap: f64, closing_speed: f64, factor: f64) -> f64 {
     let elastic = normal_load(stiffness, overlap);

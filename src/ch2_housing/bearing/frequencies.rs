@@ -1,23 +1,21 @@
 //! Kinematic frequencies of a ball bearing whose balls roll without slip (used in 5.4).
 
-/// Characteristic frequencies over the shaft frequency: inner race turning, outer race fixed.
+/// Characteristic frequencies divided by the shaft frequency: inner race rotating, outer race fixed. Dimensionless.
 ///
-/// They are the rates at which a train of defects would be struck, and the lines to look for in a
-/// spectrum. All are dimensionless; multiply by the shaft frequency in Hz.
+/// They are the defect frequencies to look for in a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frequencies {
-    /// Cage, also fundamental train frequency (FTF).
+    /// Cage rotation, also fundamental train frequency (FTF).
     pub cage: f64,
-    /// Balls passing a point of the outer race (BPFO).
+    /// Ball pass frequency of the outer race (BPFO).
     pub ball_pass_outer: f64,
-    /// Balls passing a point of the inner race (BPFI).
+    /// Ball pass frequency of the inner race (BPFI).
     pub ball_pass_inner: f64,
-    /// Turns of a ball about its own axis, seen from the cage (BSF). A defect of a ball meets a
-    /// race twice in each turn.
+    /// Ball spin frequency (BSF), relative to the cage. A ball defect strikes a race twice per revolution.
     pub ball_spin: f64,
 }
 
-/// Frequencies over the shaft frequency, from pure rolling at a common contact angle.
+/// Characteristic frequencies divided by the shaft frequency, for pure rolling at a common contact angle.
 ///
 /// `ball_radius` and `pitch_radius` in the same unit (m), `contact_angle` in rad. With
 /// γ = (r_b/R_pitch) cos α: cage ½(1−γ), outer Z/2 (1−γ), inner Z/2 (1+γ), ball
@@ -28,7 +26,7 @@ pub struct Frequencies {
 ///
 /// // Table 5.3: eleven balls, 35° contact angle.
 /// let frequencies = ratios(11, 5.953e-3, 30.0e-3, 35f64.to_radians());
-/// // Cage and balls share one motion: each ball passes once a turn of the cage.
+/// // The balls orbit with the cage, so each passes once per revolution of the cage.
 /// assert!((frequencies.ball_pass_outer - 11.0 * frequencies.cage).abs() <= 1e-14);
 /// ```
 #[doc(alias = "FTF")]

@@ -25,7 +25,7 @@ pub enum BearingKind {
     AngularContact,
 }
 
-/// Raceway of one race: a torus whose cross-section is a circle of `groove_radius`.
+/// Raceway of one race: a torus of circular cross-section with radius `groove_radius`.
 ///
 /// Lengths in m, in the race's own frame: X along its axis, origin at the bearing centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Raceway {
     pub groove_radius: f64,
 }
 
-/// How the internal clearance enters the geometry (4.3.1 varies the balls).
+/// Dimension that is changed to set the internal clearance (4.3.1 changes the balls).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClearanceThrough {
     Ball,
@@ -46,26 +46,26 @@ pub enum ClearanceThrough {
     OuterRace,
 }
 
-/// Resolved geometry, SI units.
+/// Resolved bearing geometry, SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BearingGeometry {
     pub kind: BearingKind,
     pub ball_count: usize,
-    /// Ball radius in use, after the clearance has been applied.
+    /// Ball radius after the clearance has been applied, m.
     pub ball_radius: f64,
     pub inner: Raceway,
     pub outer: Raceway,
-    /// Distance of ball centres from the axis in the nominal position.
+    /// Distance of the ball centres from the axis in the nominal position, m.
     pub pitch_radius: f64,
     /// Contact angle of the nominal (just touching) position, rad; zero for a deep-groove bearing.
     pub contact_angle: f64,
-    /// Radial internal clearance, m: how far the inner race moves radially from its nominal
-    /// position until it touches; negative is interference. The diametral clearance is twice it.
+    /// Radial internal clearance, m: radial displacement of the inner race from its nominal position until it touches;
+    /// negative for interference. The diametral clearance is twice this value.
     pub radial_clearance: f64,
 }
 
 impl BearingGeometry {
-    /// Azimuths of balls evenly spaced from the `first` one on, rad.
+    /// Azimuths of evenly spaced balls, starting at `first`, rad.
     pub fn azimuths(&self, first: f64) -> Vec<f64> {
         (0..self.ball_count)
             .map(|ball| first + TAU * ball as f64 / self.ball_count as f64)
@@ -109,9 +109,8 @@ impl BearingGeometry {
         }
     }
 
-    /// Angular-contact bearing whose balls just touch both races at `pitch_radius` under
-    /// `contact_angle` (Table 5.3); lengths in m, angle in rad. Pushing the inner race towards +X
-    /// loads the balls.
+    /// Angular-contact bearing whose balls just touch both races at `pitch_radius` under `contact_angle` (Table 5.3);
+    /// lengths in m, angle in rad. An inner-race displacement towards +X loads the balls.
     pub fn angular_contact(
         ball_count: usize,
         pitch_radius: f64,
@@ -143,12 +142,8 @@ impl BearingGeometry {
         }
     }
 
-    /// The same bearing with another radial clearance (m), obtained through the ball radius as in
-    /// 4.3.1 or by moving one race's groove.
-    ///
-    /// The clearance is how far the inner race moves radially from its nominal position until it
-    /// touches, so for an angular-contact bearing the distance of the groove centres counts along
-    /// the contact line.
+    /// The same bearing with another radial clearance (m), set by the ball radius as in 4.3.1 or by moving one race's
+    /// groove. For an angular-contact bearing the distance of the groove centres is measured along the contact line.
     pub fn with_radial_clearance(&self, clearance: f64, through: ClearanceThrough) -> Self {
         let mut changed = *self;
         if clearance == self.radial_clearance {

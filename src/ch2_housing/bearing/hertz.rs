@@ -1,19 +1,17 @@
-//! Hertz contact of a ball with a raceway: the stiffness coefficient K_H of (2.1), the contact
-//! ellipse and the pressure.
+//! Hertz contact of a ball with a raceway: stiffness coefficient K_H of (2.1), contact ellipse and pressure.
 //!
-//! The source takes K_H from Hamrock's curve fit. The fit is offered beside the exact solution by
-//! complete elliptic integrals. K_H is fixed at the nominal contact geometry, so that the contact
-//! force is the gradient of an energy.
+//! The dissertation takes K_H from Hamrock's curve fit; the exact solution by complete elliptic integrals is also
+//! available. K_H is fixed at the nominal contact geometry, so that the contact force derives from an energy.
 
 use super::elliptic::{first_kind, integral_b, integral_d, second_kind};
 use super::geometry::{BearingGeometry, Material, Raceway};
 use std::f64::consts::PI;
 use thiserror::Error;
 
-/// Which solution of the elliptic contact problem gives K_H.
+/// Solution of the elliptic contact problem that gives K_H.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HertzModel {
-    /// Curve fit of Hamrock and Brewe (1983), the source's choice.
+    /// Curve fit of Hamrock and Brewe (1983), used in the dissertation.
     HamrockBrewe,
     /// Complete elliptic integrals.
     Exact,
@@ -28,7 +26,7 @@ pub struct HertzContact {
     pub radius_rolling: f64,
     /// Relative radius across the groove, m.
     pub radius_transverse: f64,
-    /// Ratio k of the ellipse's major to its minor axis.
+    /// Ratio k of the major to the minor axis of the contact ellipse.
     pub ellipticity: f64,
     /// Complete elliptic integral of the first kind (or its fit).
     pub integral_first: f64,
@@ -38,14 +36,14 @@ pub struct HertzContact {
     pub effective_modulus: f64,
 }
 
-/// Size and pressure of a loaded contact.
+/// Dimensions and pressure of a loaded contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactEllipse {
     /// m.
     pub semi_major: f64,
     /// m.
     pub semi_minor: f64,
-    /// Largest pressure, Pa.
+    /// Peak pressure, Pa.
     pub peak_pressure: f64,
 }
 
@@ -53,7 +51,7 @@ pub struct ContactEllipse {
 pub enum HertzError {
     #[error(
         "relative radii must be positive and finite, but are {rolling} m in the rolling direction \
-         and {transverse} m across the groove: the ball is as large as the surface it lies in"
+         and {transverse} m across the groove: the ball must be smaller than the raceway and groove radii"
     )]
     NotConvex { rolling: f64, transverse: f64 },
 }
@@ -69,14 +67,14 @@ pub fn hamrock_brewe(radius_ratio: f64) -> (f64, f64, f64) {
     (ellipticity, first, second)
 }
 
-/// Exact counterpart of [`hamrock_brewe`]: the root k of k² B(m)/D(m) = radius ratio with
-/// m = 1 − 1/k², which is the classical condition (k²E − K)/(K − E) freed of its cancellations.
+/// Exact counterpart of [`hamrock_brewe`]: the root k of k² B(m)/D(m) = radius ratio with m = 1 − 1/k². This is the
+/// classical condition (k²E − K)/(K − E) without its cancellations.
 pub fn exact_elliptic(radius_ratio: f64) -> (f64, f64, f64) {
     let ratio_at = |k: f64| {
         let complementary = 1.0 / (k * k);
         k * k * integral_b(complementary) / integral_d(complementary)
     };
-    // B ≤ D, so that k² ≥ ratio; and B/D falls slower than 1/k, so that k ≤ ratio.
+    // B ≤ D gives k² ≥ ratio; B/D falls more slowly than 1/k, which gives k ≤ ratio.
     let (mut low, mut high) = (radius_ratio.sqrt(), radius_ratio);
     loop {
         let middle = 0.5 * (low + high);
@@ -136,7 +134,7 @@ pub fn effective_modulus(one: &Material, other: &Material) -> f64 {
     2.0 / (compliance(one) + compliance(other))
 }
 
-/// Whether the race's rolling surface is convex (inner race) or concave (outer race).
+/// Race of a contact: convex (inner) or concave (outer) rolling surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RaceSide {
     Inner,
@@ -177,7 +175,7 @@ fn principal_radius(raceway: &Raceway, outward: f64, cos_angle: f64) -> f64 {
     raceway.centre_radius / cos_angle + outward * raceway.groove_radius
 }
 
-/// Contact ellipse and peak pressure under a normal load in N; all zero without load.
+/// Contact ellipse and peak pressure under a normal load in N; all zero for zero load.
 pub fn contact_ellipse(contact: &HertzContact, normal_load: f64) -> ContactEllipse {
     if normal_load <= 0.0 {
         return ContactEllipse { semi_major: 0.0, semi_minor: 0.0, peak_pressure: 0.0 };

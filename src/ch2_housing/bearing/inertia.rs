@@ -1,21 +1,20 @@
-//! Mass and moments of inertia of bearing parts, from geometry and density.
-//!
-//! The source states none of them but the cage's mass (Table 5.3).
+//! Mass and moments of inertia of bearing parts, from geometry and density. The dissertation gives only the cage's mass
+//! (Table 5.3).
 
 use std::f64::consts::PI;
 
-/// Rigid body with an axis of symmetry (X of its own frame).
+/// Mass and inertia of a rigid body with X as axis of symmetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
     /// kg.
     pub mass: f64,
     /// About the axis of symmetry, kg·m².
     pub axial: f64,
-    /// About any axis across it through the centre of mass, kg·m².
+    /// About a transverse axis through the centre of mass, kg·m².
     pub transverse: f64,
 }
 
-/// Solid ball: 4/3 π ρ r³ and 2/5 m r².
+/// Solid ball of `radius` (m) and `density` (kg/m³): 4/3 π ρ r³ and 2/5 m r².
 pub fn ball(radius: f64, density: f64) -> Inertia {
     let mass = 4.0 / 3.0 * PI * density * radius * radius * radius;
     let moment = 0.4 * mass * radius * radius;
@@ -33,9 +32,9 @@ pub fn hollow_cylinder(inner: f64, outer: f64, length: f64, density: f64) -> Ine
     }
 }
 
-/// The same with a groove of circular cross-section cut into its inner or outer surface: a ring
-/// whose bounding radius is `land`, with a groove of radius `groove_radius` around the circle of
-/// radius `centre_radius` in the mid-plane. Integrated over the axial coordinate.
+/// Hollow cylinder with a groove of circular cross-section in its inner or outer surface. `land` is the radius of the
+/// grooved surface, `groove_radius` the radius of the groove around a circle of radius `centre_radius` in the
+/// mid-plane, all in m. Integrated over the axial coordinate.
 pub fn grooved_ring(
     plain: f64,
     land: f64,
@@ -44,8 +43,8 @@ pub fn grooved_ring(
     length: f64,
     density: f64,
 ) -> Inertia {
-    // Discs: mass, axial and transverse moments by Gauss–Legendre pieces on both sides of the
-    // groove's edge, where the profile has a corner.
+    // Thin discs integrated by Gauss–Legendre quadrature on both sides of the groove's edge, where the profile has a
+    // corner.
     let depth_of = |x: f64| {
         let inside = groove_radius * groove_radius - x * x;
         if inside <= 0.0 {
@@ -68,7 +67,6 @@ pub fn grooved_ring(
                 let surface = depth_of(x);
                 if surface < plain { (surface, plain) } else { (plain, surface) }
             };
-            // Both halves.
             let slab = 0.5 * (to - from) * weight * 2.0 * density * PI;
             let area = outer * outer - inner * inner;
             let fourth = outer.powi(4) - inner.powi(4);

@@ -1,36 +1,35 @@
 //! Sliding of a ball on a race, and traction integrated over the contact ellipse.
 //!
-//! The source varies the sliding speed along the major axis only (2.2.1): the ellipse is cut into
-//! slices across it, each with the share of the normal load that Hertz's pressure gives it,
-//! q(y) = (3W/4a)(1 − y²/a²), and with the slip at its own y. What a slice then resists with, its law of
-//! [`traction`](super::traction) says. With more than one point across a slice, which the source does not have, the slip that spin
-//! adds along the minor axis counts too.
+//! The dissertation varies the sliding speed along the major axis only (2.2.1). The ellipse is cut into slices across
+//! this axis. Each slice has its own slip and the share of the normal load given by Hertz's pressure,
+//! q(y) = (3W/4a)(1 − y²/a²); its friction follows from a law of [`traction`](super::traction). As an extension,
+//! several points across a slice also resolve the slip that spin adds along the minor axis.
 //!
-//! The pieces are scalar functions without branches, as those laws are.
+//! All functions are scalar and branch-free, so that they vectorise.
 
 use core::f64::consts::PI;
 
 use super::traction::{Resistance, Steepness, TractionLaw, resistance_of, steepness_of};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 
-/// Points of the contact ellipse at which slip is looked at: along the major axis the middle of its slice (y/a), along the minor
-/// axis its offset from there (x/b), and its share of the normal load.
+/// Integration points of the contact ellipse: position of the slice on the major axis (y/a), offset along the minor
+/// axis (x/b), and share of the normal load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slices {
     pub middle: Vec<f64>,
     pub offset: Vec<f64>,
     pub share: Vec<f64>,
-    /// Whether a point lies beside the middle of its slice.
+    /// True if a slice has points off the major axis.
     pub across: bool,
 }
 
 impl Slices {
-    /// `count` slices of equal width; each share is the exact integral of Hertz's pressure over
-    /// the slice, so that the shares add up to one.
+    /// `count` slices of equal width; each share is the exact integral of Hertz's pressure over the slice, so that the
+    /// shares sum to one.
     ///
-    /// `across` points divide a slice: Hertz's pressure is a half ellipse along it, q(x) ∝ √(1 − (x/w)²) with the slice's half
-    /// width w = b√(1 − (y/a)²), the weight of Gauss and Chebyshev's second rule: xⱼ = w cos(jπ/(n + 1)), shares
-    /// 2 sin²(jπ/(n + 1))/(n + 1). One point lies in the middle.
+    /// Each slice has `across` points. The pressure along it is q(x) ∝ √(1 − (x/w)²), w = b√(1 − (y/a)²), the weight of
+    /// the Gauss–Chebyshev rule of the second kind: points xⱼ = w cos(jπ/(n + 1)), shares
+    /// 2 sin²(jπ/(n + 1))/(n + 1). A single point is on the major axis.
     pub fn new(count: usize, across: usize) -> Slices {
         let width = 2.0 / count as f64;
         // ∫ (3/4)(1 − η²) dη.
@@ -56,10 +55,10 @@ impl Slices {
     }
 }
 
-/// Share and place (over the half width) of point `j` (1 to `points`) across a slice.
+/// Share and position (divided by the half width) of point `j` (1 to `points`) across a slice.
 fn across_slice(j: usize, points: usize) -> (f64, f64) {
     if 2 * j == points + 1 {
-        // The cosine of a right angle is not quite nothing.
+        // cos(π/2) is not exactly zero in floating point.
         return (2.0 / (points + 1) as f64, 0.0);
     }
     let angle = j as f64 * PI / (points + 1) as f64;
@@ -75,27 +74,27 @@ pub struct Motion {
     pub spin: Vec3,
 }
 
-/// Sliding of a ball on a race at the middle of the contact and how it changes across it.
+/// Sliding of a ball on a race at the centre of the contact, and its variation over the contact.
 ///
 /// t is the rolling direction (about the race's axis), n the outward normal of the ball, s = n × t.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sliding {
     pub rolling_direction: Vec3,
     pub transverse_direction: Vec3,
-    /// From the ball centre to the contact point.
+    /// Vector from the ball centre to the contact point, m.
     pub arm_on_ball: Vec3,
-    /// From the race's centre to the contact point.
+    /// Vector from the race's centre to the contact point, m.
     pub arm_on_race: Vec3,
-    /// Slip of the ball's surface over the race's at the middle: t and s part, m/s.
+    /// Slip of the ball's surface over the race's at the centre: t and s components, m/s.
     pub slip: [f64; 2],
     /// Relative spin about t, s and n, rad/s.
     pub relative_spin: Vec3,
-    /// Mean speed of both surfaces through the contact, m/s, ≥ 0.
+    /// Mean speed of both surfaces relative to the contact (entrainment speed), m/s, ≥ 0.
     pub entrainment: f64,
 }
 
-/// Sliding at a contact with outward ball normal `normal` and overlap `overlap`; `axis` is the
-/// race's axis and `outward` the unit vector from it to the ball.
+/// Sliding at a contact. `normal` is the outward normal of the ball, `axis` the race's axis and `outward` the unit
+/// vector from the axis to the ball.
 #[inline(always)]
 pub fn sliding(
     ball: &Motion,
@@ -114,7 +113,7 @@ pub fn sliding(
     let race_surface = add(race.velocity, cross(race.spin, arm_on_race));
     let slip = sub(ball_surface, race_surface);
     let relative = sub(ball.spin, race.spin);
-    // The contact travels round the race with the ball.
+    // The contact moves around the race with the ball.
     let travel = dot(sub(ball.velocity, race.velocity), rolling_direction)
         * (dot(arm_on_race, outward) / dot(between, outward))
         + dot(race.velocity, rolling_direction);
@@ -134,8 +133,8 @@ pub fn sliding(
     }
 }
 
-/// What the slices add up to, per unit of normal load: traction on the ball along t and s, moment
-/// about n (m), and power lost (m/s).
+/// Traction summed over the slices per unit of normal load: force on the ball along t and s, moment about n (m), and
+/// dissipated power (m/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliceSum {
     pub rolling: f64,
@@ -144,28 +143,29 @@ pub struct SliceSum {
     pub power: f64,
 }
 
-/// How traction falls with more sliding: negated derivatives of the force along t and s and of the
-/// moment about n by both slips and the relative spin, over the normal load. Upper triangle of a
-/// symmetric matrix that has no negative eigenvalue: tt, ts, tn, ss, sn, nn.
+/// Traction damping per unit of normal load: negated derivatives of the t and s forces and of the moment about n by
+/// both slips and the relative spin. Upper triangle of a symmetric positive semidefinite matrix: tt, ts, tn, ss, sn,
+/// nn.
 pub type TractionSlope = [f64; 6];
 
-/// Where in a contact slip is looked at, m from its middle: along the rolling direction and across it (s).
+/// Point of a contact, m from its centre: along the rolling direction (t) and across it (s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactPoint {
     pub x: f64,
     pub y: f64,
 }
 
-/// Slip at a point of a contact, from that of its middle and the relative spin about n: t and s part, m/s. Without `ACROSS` its `x` is zero and not looked at.
+/// Slip at a point of a contact from the slip at its centre and the relative spin about n: t and s components, m/s.
+/// Without `ACROSS`, `x` is zero and ignored.
 #[inline(always)]
 fn slip_at<const ACROSS: bool>(slip: [f64; 2], spin: f64, point: ContactPoint) -> [f64; 2] {
     let ContactPoint { x, y } = point;
     [slip[0] - spin * y, if ACROSS { slip[1] + spin * x } else { slip[1] }]
 }
 
-/// Adds what a point with a `share` of the load resists with. `friction` gives its
-/// [`Resistance`] from the square of the sliding speed and the share. Without `ACROSS` the point lies in the middle of its slice,
-/// which saves three hundredths of a run; the bits are the same of all that is finite.
+/// Adds the traction of a point with a `share` of the load. `friction` returns its [`Resistance`] from the square of
+/// the sliding speed and the share. Without `ACROSS` the point is on the major axis; all finite results are the same
+/// bit for bit.
 #[inline(always)]
 pub fn add_slice<const ACROSS: bool>(
     sum: &SliceSum,
@@ -190,8 +190,8 @@ pub fn add_slice<const ACROSS: bool>(
     }
 }
 
-/// Adds the slope of a point, whose force [`add_slice`] adds. `friction` gives its [`Steepness`] from the square of the
-/// sliding speed and the share.
+/// Adds the traction damping of a point whose force [`add_slice`] adds. `friction` returns its [`Steepness`] from the
+/// square of the sliding speed and the share.
 #[inline(always)]
 pub fn add_slope<const ACROSS: bool>(
     sum: &TractionSlope,
@@ -217,14 +217,14 @@ pub fn add_slope<const ACROSS: bool>(
     }
 }
 
-/// Force and moment of the traction on the ball, in inertial axes; the race feels the opposite
-/// force at the same point and the opposite moment.
+/// Traction force and moment on the ball, inertial axes; the race takes the opposite force at the same point and the
+/// opposite moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TractionForce {
     pub force: Vec3,
     /// Moment about the normal, N·m.
     pub moment: Vec3,
-    /// Power taken from the bodies, W, ≤ 0.
+    /// Power of the traction, W, ≤ 0.
     pub power: f64,
 }
 
@@ -243,17 +243,17 @@ pub fn traction_force(
     }
 }
 
-/// Contact ellipse of a pair.
+/// Contact ellipse of a ball and a race.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// m.
     pub semi_major: f64,
-    /// Along the rolling direction, m. In the middle of a slice it does not count.
+    /// Along the rolling direction, m. Not used for points on the major axis.
     pub semi_minor: f64,
 }
 
 impl Patch {
-    /// Place of a point given by parts of the half axes.
+    /// Position of a point given by fractions of the semi-axes.
     #[inline(always)]
     pub fn point(&self, middle: f64, offset: f64) -> ContactPoint {
         ContactPoint { x: offset * self.semi_minor, y: middle * self.semi_major }
@@ -261,7 +261,7 @@ impl Patch {
 }
 
 impl Slices {
-    /// Middle, offset and share of each point, in order.
+    /// Position on the major axis, offset and share of each point, in order.
     #[inline(always)]
     pub fn points(&self) -> impl Iterator<Item = (f64, f64, f64)> {
         let places = self.middle.iter().zip(&self.offset);
@@ -269,7 +269,7 @@ impl Slices {
     }
 }
 
-/// All slices of one contact, in order.
+/// Traction summed over all slices of one contact, in order.
 pub fn integrate(law: &TractionLaw, slices: &Slices, sliding: &Sliding, patch: &Patch) -> SliceSum {
     let mut sum = SliceSum::default();
     for (middle, offset, share) in slices.points() {
@@ -281,7 +281,7 @@ pub fn integrate(law: &TractionLaw, slices: &Slices, sliding: &Sliding, patch: &
     sum
 }
 
-/// Slopes of all slices of one contact, in order; arguments as of [`integrate`].
+/// Traction damping summed over all slices of one contact, in order; arguments as for [`integrate`].
 pub fn integrate_slope(
     law: &TractionLaw,
     slices: &Slices,

@@ -1,18 +1,17 @@
-//! Laws of friction between ball and race: the coefficient over the sliding (2.2.1), and what it makes of a slice of a contact
-//! ([`slices`](super::slices)).
+//! Friction laws between ball and race (2.2.1): coefficient as a function of sliding, and its force on a slice of the
+//! contact ([`slices`](super::slices)).
 //!
-//! The pieces are scalar functions without branches: one contact calls them in turn, the fast path
-//! calls them over lanes of contacts, and both get the same bits.
+//! All functions are scalar and branch-free: the scalar path and the vectorised path over contacts give the same bits.
 
-/// How the friction coefficient follows from the sliding.
+/// Friction coefficient as a function of sliding.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TractionLaw {
-    /// No traction: no slices either.
+    /// No traction.
     None,
-    /// Coulomb's law, rounded off below a sliding speed (m/s): κ u/√(u² + u₀²).
+    /// Coulomb's law, regularised below a sliding speed (m/s): κ u/√(u² + u₀²).
     Constant { coefficient: f64, regularisation_speed: f64 },
-    /// Exponential in the slide-to-roll ratio s = u/U: κ = (a + b s) e^(−c s) + d. The entrainment
-    /// speed U has a floor (m/s), since s is singular at rest.
+    /// Exponential in the slide-to-roll ratio s = u/U: κ = (a + b s) e^(−c s) + d. The entrainment speed U has a lower
+    /// limit (m/s), because s is singular at rest.
     SlideToRoll { curve: ExponentialCurve, entrainment_floor: f64 },
     /// Exponential in the sliding speed u: κ = (a + b u) e^(−c u) + d.
     SlipSpeed { curve: ExponentialCurve },
@@ -27,9 +26,8 @@ pub struct ExponentialCurve {
 }
 
 impl ExponentialCurve {
-    /// Common boundary-lubrication set over the slide-to-roll ratio: κ = (−0.1 + 22.28 s)
-    /// e^(−181.46 s) + 0.1, with its peak of 0.12 at s = 0.010. The source's own curve is not
-    /// printed; this one is an assumption.
+    /// Typical boundary-lubrication curve over the slide-to-roll ratio: κ = (−0.1 + 22.28 s) e^(−181.46 s) + 0.1, with
+    /// its peak of 0.12 at s = 0.010. An assumption: the dissertation does not print its curve.
     pub const BOUNDARY: ExponentialCurve = ExponentialCurve { b: 22.28, c: 181.46, d: 0.1 };
 
     #[inline(always)]
@@ -46,10 +44,9 @@ impl ExponentialCurve {
     }
 }
 
-/// e^x for x ≤ 0, to 2 ulp, without branches; below −708 it stays at e^−708.
+/// e^x for x ≤ 0, to 2 ulp, without branches; constant e^−708 below −708.
 ///
-/// The system's exponential is a call for each number and picks its code by processor; this one
-/// runs over lanes and has the same bits everywhere.
+/// Unlike the system's exponential it vectorises and gives the same bits on every processor.
 #[inline(always)]
 pub fn exp_of_negative(x: f64) -> f64 {
     const LOG2_E: f64 = std::f64::consts::LOG2_E;
@@ -62,7 +59,7 @@ pub fn exp_of_negative(x: f64) -> f64 {
     let shifted = x * LOG2_E + MAGIC;
     let k = shifted - MAGIC;
     let r = (x - k * LN2_HIGH) - k * LN2_LOW;
-    // |r| ≤ 0.347: the Taylor series to r¹³ is off by 4e-18.
+    // |r| ≤ 0.347: the Taylor series to r¹³ has an error of 4e-18.
     let mut p = 1.0 / 6_227_020_800.0;
     p = p * r + 1.0 / 479_001_600.0;
     p = p * r + 1.0 / 39_916_800.0;
@@ -113,7 +110,7 @@ pub fn coefficient_and_slope(law: &TractionLaw, slip: f64, entrainment: f64) -> 
     }
 }
 
-/// Coulomb's law rounded off, and its slope.
+/// Regularised Coulomb law, and its slope.
 #[inline(always)]
 fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
     let square = slip * slip + speed * speed;
@@ -121,12 +118,12 @@ fn regularised(coefficient: f64, speed: f64, slip: f64) -> (f64, f64) {
     (coefficient * slip / root, coefficient * speed * speed / (square * root))
 }
 
-/// How the force of a slice with a share of the load changes with its sliding, over the load: with sliding across that there is,
-/// s/m, and what sliding along it adds, over the square of the speed, (s/m)³.
+/// Derivative of a slice's friction force by the slip, divided by the normal load: the isotropic part, s/m, and the
+/// additional part along the slip divided by the square of the speed, (s/m)³.
 pub type Steepness = [f64; 2];
 
-/// Of a friction coefficient with its slope over the sliding speed, at the speed's `square`. Beyond the peak of the friction
-/// curve its slope counts as zero, so that the derivatives only ever dissipate.
+/// [`Steepness`] from a friction coefficient and its slope, at the `square` of the sliding speed. Beyond the peak of
+/// the friction curve the slope is taken as zero, so that the derivatives are always dissipative.
 #[inline(always)]
 pub fn steepness(square: f64, share: f64, friction: impl Fn(f64) -> (f64, f64)) -> Steepness {
     let speed = square.sqrt();
@@ -139,7 +136,7 @@ pub fn steepness(square: f64, share: f64, friction: impl Fn(f64) -> (f64, f64)) 
     [secant, (share * rise - secant) * per * per]
 }
 
-/// The same of Coulomb's law rounded off.
+/// [`Steepness`] of the regularised Coulomb law.
 #[inline(always)]
 pub fn rounded_steepness(
     square: f64,
@@ -152,7 +149,7 @@ pub fn rounded_steepness(
     [secant, -secant / square]
 }
 
-/// Of any law, at an entrainment speed (m/s).
+/// [`Steepness`] of any law, at an entrainment speed (m/s).
 #[inline(always)]
 pub(super) fn steepness_of(
     law: &TractionLaw,
@@ -168,27 +165,26 @@ pub(super) fn steepness_of(
     }
 }
 
-/// 1/U with the floor under U, s/m; one division a contact serves all its slices.
+/// 1/U with the lower limit of U, s/m; computed once per contact.
 #[inline(always)]
 pub fn per_entrainment(entrainment: f64, floor: f64) -> f64 {
     1.0 / if entrainment > floor { entrainment } else { floor }
 }
 
-/// What a slice with a share of the load puts up against sliding, over the load: force over the sliding speed, s/m, and the power
-/// it takes, m/s.
+/// Friction of a slice divided by the normal load: force divided by the sliding speed, s/m, and dissipated power, m/s.
 pub type Resistance = [f64; 2];
 
-/// Of a friction coefficient over the sliding speed, at the speed's `square`.
+/// [`Resistance`] from a friction coefficient, at the `square` of the sliding speed.
 #[inline(always)]
 pub fn resistance(square: f64, share: f64, coefficient: impl Fn(f64) -> f64) -> Resistance {
     let speed = square.sqrt();
-    // Where nothing slides nothing is divided by zero: friction is zero there.
+    // Avoids a division by zero; without sliding the friction is zero.
     let divisor = if speed > 1e-300 { speed } else { 1e-300 };
     let per_speed = share * coefficient(speed) / divisor;
     [per_speed, per_speed * speed * speed]
 }
 
-/// The same of Coulomb's law rounded off: κ u/√(u² + u₀²) over u needs neither u nor a division by it, half of what a slice takes.
+/// [`Resistance`] of the regularised Coulomb law: κ u/√(u² + u₀²) divided by u needs neither u nor a division by it.
 #[inline(always)]
 pub fn rounded_resistance(
     square: f64,
@@ -201,7 +197,7 @@ pub fn rounded_resistance(
     [per_speed, per_speed * square]
 }
 
-/// Of any law, at an entrainment speed (m/s).
+/// [`Resistance`] of any law, at an entrainment speed (m/s).
 #[inline(always)]
 pub(super) fn resistance_of(
     law: &TractionLaw,

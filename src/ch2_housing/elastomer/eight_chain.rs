@@ -1,9 +1,8 @@
-//! The eight-chain network of Arruda and Boyce in its compressible form (2.8–2.12), (3.1–3.7).
+//! Compressible eight-chain network of Arruda and Boyce (2.8–2.12), (3.1–3.7).
 //!
-//! The energy is a function of Ī₁ plus one of J, so that stress and tangent are a deviatoric part
-//! (DEV S, which drives the Maxwell elements) and a volume part. With dev E = E − tr(E)/3 the factor
-//! 1 − (I₁/3) C⁻¹ of (2.12) is 2 dev(E) C⁻¹, and Ī₁ − 3 follows from invariants of dev E: no digit is
-//! lost at small strain.
+//! The energy is a function of Ī₁ plus a function of J, so that stress and tangent split into a deviatoric part (DEV S,
+//! which drives the Maxwell elements) and a volumetric part. With dev E = E − tr(E)/3 the factor 1 − (I₁/3) C⁻¹ of
+//! (2.12) is 2 dev(E) C⁻¹, and Ī₁ − 3 follows from invariants of dev E: full precision at small strain.
 
 use super::ElastomerError;
 use super::langevin;
@@ -12,34 +11,33 @@ use crate::kinematics::strain::{
     Mat3, Sym3, Tangent, determinant, double_dot, full, volume_change,
 };
 
-/// How the pull of a chain is computed.
+/// Evaluation of the chain force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ChainPull {
-    /// The five terms that the source writes out.
+    /// The five-term series of the dissertation.
     #[default]
     FiveTerms,
-    /// The inverse Langevin function that they approximate; beyond the locking stretch there is no
-    /// state.
+    /// Inverse Langevin function, which the series approximates; an error beyond the locking stretch.
     Exact,
 }
 
-/// The network at equilibrium.
+/// Constants of the eight-chain network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightChain {
     /// C_R, Pa.
     pub modulus: f64,
-    /// N: chains are straight where √(Ī₁/3) reaches √N.
+    /// N: the chains are straight at √(Ī₁/3) = √N.
     pub locking: f64,
     /// B, Pa.
     pub bulk: f64,
     pub pull: ChainPull,
 }
 
-/// Coefficients of (2.8): of Ī₁ᵏ/Nᵏ⁻¹, from k = 1 on.
+/// Coefficients of (2.8): factors of Ī₁ᵏ/Nᵏ⁻¹ for k = 1 to 5.
 pub(super) const SERIES: [f64; 5] =
     [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
 
-/// What stress and tangent need of a strain.
+/// Strain measures for stress and tangent.
 struct Strained {
     /// C⁻¹.
     inverse: Sym3,
@@ -84,7 +82,7 @@ impl Strained {
     }
 }
 
-/// C⁻¹ of C = 1 + 2E with the given determinant.
+/// C⁻¹ of C = 1 + 2E; `det` is det C.
 fn inverse_of(e: &Sym3, det: f64) -> Sym3 {
     let c =
         [1.0 + 2.0 * e[0], 1.0 + 2.0 * e[1], 1.0 + 2.0 * e[2], 2.0 * e[3], 2.0 * e[4], 2.0 * e[5]];
@@ -99,11 +97,11 @@ fn inverse_of(e: &Sym3, det: f64) -> Sym3 {
     ]
 }
 
-/// The product of two symmetric tensors of the same axes, which is symmetric.
+/// Product of two symmetric tensors with the same principal axes; it is symmetric.
 fn commuting_product(a: &Sym3, b: &Sym3) -> Sym3 {
     let (a, b) = (full(a), full(b));
     let entry = |i: usize, j: usize| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-    // Rounding parts the halves: their mean is symmetric to the last bit.
+    // Averaging makes the rounded product exactly symmetric.
     let half = |i: usize, j: usize| 0.5 * (entry(i, j) + entry(j, i));
     [entry(0, 0), entry(1, 1), entry(2, 2), half(0, 1), half(1, 2), half(2, 0)]
 }
@@ -111,7 +109,7 @@ fn commuting_product(a: &Sym3, b: &Sym3) -> Sym3 {
 /// Indices of the components of a [`Sym3`].
 const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]];
 
-/// Adds factor · C⁻¹ ⊙ C⁻¹, which takes dE to C⁻¹ dE C⁻¹.
+/// Adds factor · C⁻¹ ⊙ C⁻¹, which maps dE to C⁻¹ dE C⁻¹.
 fn add_inverse_square(tangent: &mut Tangent, factor: f64, inverse: &Sym3) {
     let c = full(inverse);
     for (row, [i, j]) in tangent.iter_mut().zip(PAIRS) {
@@ -122,10 +120,10 @@ fn add_inverse_square(tangent: &mut Tangent, factor: f64, inverse: &Sym3) {
 }
 
 impl EightChain {
-    /// From C_R (Pa), N, B (Pa).
+    /// Network from C_R (Pa), N and B (Pa).
     ///
     /// # Errors
-    /// A constant that is not positive; N ≤ 1 with the exact pull.
+    /// If a constant is not positive, or N ≤ 1 with [`ChainPull::Exact`].
     pub fn new(
         modulus: f64,
         locking: f64,
@@ -148,7 +146,7 @@ impl EightChain {
         Ok(EightChain { modulus, locking, bulk, pull })
     }
 
-    /// ∂W/∂Ī₁ over C_R, and its derivative, at Ī₁ = 3 + `excess`.
+    /// ∂W/∂Ī₁ divided by C_R, and its derivative, at Ī₁ = 3 + `excess`.
     fn slope(&self, excess: f64) -> Result<[f64; 2], ElastomerError> {
         let (invariant, per) = (3.0 + excess, 1.0 / self.locking);
         match self.pull {
@@ -160,7 +158,7 @@ impl EightChain {
                 Ok([slope, bend])
             }
             ChainPull::Exact => {
-                // Stretch of a chain over the stretch at which it is straight.
+                // Chain stretch divided by the stretch at which the chain is straight.
                 let x = (invariant * per / 3.0).sqrt();
                 let short = x < 1.0;
                 if !short {
@@ -168,13 +166,13 @@ impl EightChain {
                     return Err(ElastomerError::Locked { stretch, limit });
                 }
                 let [beta, rate] = langevin::inverse(x);
-                // β/(6x) by Ī₁, of which x depends as dx/dĪ₁ = x/(2 Ī₁).
+                // Derivative of β/(6x) by Ī₁, with dx/dĪ₁ = x/(2 Ī₁).
                 Ok([beta / (6.0 * x), (rate - beta / x) / (12.0 * invariant)])
             }
         }
     }
 
-    /// Energy of the chains over C_R at Ī₁ = 3 + `excess`, zero at rest.
+    /// Chain energy divided by C_R at Ī₁ = 3 + `excess`; zero at rest.
     fn chain_energy(&self, excess: f64) -> Result<f64, ElastomerError> {
         match self.pull {
             ChainPull::FiveTerms => {
@@ -189,8 +187,8 @@ impl EightChain {
                 }
                 Ok(excess * sum)
             }
-            // What is left of the difference of energies below would lose digits: Gauss's rule of
-            // three points, of degree 5, leaves excess⁶.
+            // The difference of energies below would lose digits. Three-point Gauss quadrature, of degree 5, has an
+            // error of order excess⁶.
             ChainPull::Exact if excess < 3e-3 => {
                 let root = 0.6f64.sqrt();
                 let mut sum = 0.0;
@@ -211,35 +209,35 @@ impl EightChain {
         }
     }
 
-    /// μ at rest, Pa.
+    /// Shear modulus μ at rest, Pa.
     pub fn shear_modulus(&self) -> f64 {
-        // At rest no chain is straight: `new` has seen to it.
+        // No chain is straight at rest; checked in `new`.
         2.0 * self.modulus * self.slope(0.0).map_or(f64::NAN, |[slope, _]| slope)
     }
 
-    /// Length of a chain over that of a straight one, √(Ī₁/(3N)).
+    /// Chain length divided by its straight length, √(Ī₁/(3N)).
     ///
     /// # Errors
-    /// A strain of no deformation.
+    /// If det C is not positive.
     pub fn chain_length(&self, strain: &Sym3) -> Result<f64, ElastomerError> {
         let invariant = 3.0 + Strained::of(strain)?.excess;
         Ok((invariant / (3.0 * self.locking)).sqrt())
     }
 
-    /// Energy of the chains alone, J/m³: (2.8) without its last term.
+    /// Chain energy, J/m³: (2.8) without its last term.
     ///
     /// # Errors
-    /// A strain of no deformation; with the exact pull, beyond the locking stretch.
+    /// If det C is not positive; with [`ChainPull::Exact`], also beyond the locking stretch.
     pub fn isochoric_energy(&self, strain: &Sym3) -> Result<f64, ElastomerError> {
         Ok(self.modulus * self.chain_energy(Strained::of(strain)?.excess)?)
     }
 
-    /// Energy of a change of volume J − 1, J/m³: the last term of (2.8).
+    /// Volumetric energy of a volume change J − 1, J/m³: the last term of (2.8).
     pub fn volume_energy(&self, change: f64) -> f64 {
         0.5 * self.bulk * change * change
     }
 
-    /// Mean Cauchy stress at the change of volume J − 1, Pa.
+    /// Mean Cauchy stress of a volume change J − 1, Pa.
     #[inline(always)]
     pub fn mean_stress<T: Number>(&self, change: T) -> T {
         T::of(self.bulk) * change
@@ -248,16 +246,16 @@ impl EightChain {
     /// Strain energy per undeformed volume (2.8), J/m³.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn energy_density(&self, strain: &Sym3) -> Result<f64, ElastomerError> {
         let at = Strained::of(strain)?;
         Ok(self.modulus * self.chain_energy(at.excess)? + self.volume_energy(at.volume_change))
     }
 
-    /// DEV S, the first term of (2.12), Pa: S less its part along C⁻¹.
+    /// DEV S, the first term of (2.12), Pa: S minus its part along C⁻¹.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     #[inline]
     pub fn isochoric_stress(&self, strain: &Sym3) -> Result<Sym3, ElastomerError> {
         let at = Strained::of(strain)?;
@@ -269,7 +267,7 @@ impl EightChain {
     /// DEV S and its derivative by the strain, Pa.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn isochoric_tangent(&self, strain: &Sym3) -> Result<(Sym3, Tangent), ElastomerError> {
         let at = Strained::of(strain)?;
         let [slope, bend] = self.slope(at.excess)?;
@@ -291,7 +289,7 @@ impl EightChain {
     /// Second Piola–Kirchhoff stress (2.12), Pa.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn second_piola_kirchhoff(&self, strain: &Sym3) -> Result<Sym3, ElastomerError> {
         let at = Strained::of(strain)?;
         let [slope, _] = self.slope(at.excess)?;
@@ -300,10 +298,10 @@ impl EightChain {
         Ok(std::array::from_fn(|i| factor * at.projected[i] + volume * at.inverse[i]))
     }
 
-    /// The same with its derivative by the strain, Pa.
+    /// Second Piola–Kirchhoff stress and its derivative by the strain, Pa.
     ///
     /// # Errors
-    /// As [`EightChain::isochoric_energy`].
+    /// See [`EightChain::isochoric_energy`].
     pub fn tangent(&self, strain: &Sym3) -> Result<(Sym3, Tangent), ElastomerError> {
         let (_, mut tangent) = self.isochoric_tangent(strain)?;
         let at = Strained::of(strain)?;

@@ -1,8 +1,7 @@
-//! DEV S of the five-term chain as explicit steps take it: without a branch or a call, for one element or
-//! for one a lane.
+//! DEV S of the five-term chain for explicit time steps: branch-free, for one element or one element per SIMD lane.
 //!
-//! The same expressions as in [`super::eight_chain`], but that a strain of no deformation gives a value without
-//! meaning instead of an error: whoever steps watches the volume ratio.
+//! Same expressions as [`super::eight_chain`]. A strain with det C ≤ 0 gives a meaningless value instead of an error;
+//! the time stepper monitors the volume ratio.
 
 use super::eight_chain::{ChainPull, EightChain, SERIES};
 use crate::kinematics::number::Number;
@@ -13,7 +12,7 @@ use crate::kinematics::strain::{Sym3, determinant, double_dot, full};
 pub struct FiveTerms([f64; 5]);
 
 impl FiveTerms {
-    /// Of a network whose chains pull by five terms.
+    /// Polynomial of a network; `None` unless it uses [`ChainPull::FiveTerms`].
     pub fn of(network: &EightChain) -> Option<FiveTerms> {
         if network.pull != ChainPull::FiveTerms {
             return None;
@@ -53,7 +52,7 @@ impl FiveTerms {
         let x = T::of(3.0) + excess;
         let [a, b, c, f, g] = self.0.map(T::of);
         let slope = a + x * (b + x * (c + x * (f + x * g)));
-        // C⁻¹ = (1 + s)⁻¹/mean; its product with dev E is symmetric: both have the same axes.
+        // C⁻¹ = (1 + s)⁻¹/mean; its product with dev E is symmetric because both have the same principal axes.
         let m = [one + s[0], one + s[1], one + s[2]];
         let inverse = [
             m[1] * m[2] - s[4] * s[4],
@@ -73,10 +72,10 @@ impl FiveTerms {
     }
 }
 
-/// x^(−1/3) of a positive number to 4e-16: from a third of its exponent by Newton's method.
+/// x^(−1/3) for x > 0, to 4e-16: initial guess from a third of the exponent, then Newton's method.
 #[inline(always)]
 pub fn inverse_cube_root<T: Number>(x: T) -> T {
-    // 2⁵², whose last bits are units; the constant leaves at most 4 % to either side.
+    // 2⁵², whose last bits are units; the constant limits the error of the initial guess to ±4 %.
     const UNITS: f64 = 4_503_599_627_370_496.0;
     let mut y = x.each(|x| {
         let high = f64::from_bits(UNITS.to_bits() | (x.to_bits() >> 32)) - UNITS;
@@ -89,5 +88,5 @@ pub fn inverse_cube_root<T: Number>(x: T) -> T {
     y
 }
 
-/// Upper half of the bits of x^(−1/3) where that of x is zero, as a straight line has it.
+/// Upper half of the bits of x^(−1/3), extrapolated linearly to zero bits of x.
 const THIRDS: f64 = 1_430_180_000.0;

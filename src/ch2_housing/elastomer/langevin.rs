@@ -1,8 +1,8 @@
-//! The Langevin function of a chain's pull, its inverse, and the five-term series of the inverse.
+//! Langevin function of a chain, its inverse, and the logarithm in its energy.
 
 /// L(β) = coth β − 1/β and its derivative, for β ≥ 0.
 pub fn langevin(beta: f64) -> [f64; 2] {
-    // Below, coth β and 1/β cancel; the next term of the series is 1e-16 of the first.
+    // For small β, coth β and 1/β cancel; the next term of the series is 1e-16 of the first.
     if beta < 0.1 {
         let s = beta * beta;
         let value = beta
@@ -22,7 +22,7 @@ pub fn langevin(beta: f64) -> [f64; 2] {
 /// β = L⁻¹(x) and dβ/dx for 0 < x < 1, by Newton's method from Cohen's approximation (1991).
 pub fn inverse(x: f64) -> [f64; 2] {
     let mut beta = x * (3.0 - x * x) / (1.0 - x * x);
-    // The start is good to 5 %, so that four steps would do.
+    // The initial guess has an error of 5 %; four iterations suffice.
     for _ in 0..8 {
         let [value, slope] = langevin(beta);
         let step = (x - value) / slope;

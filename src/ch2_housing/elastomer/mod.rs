@@ -1,9 +1,8 @@
 //! Rubber (2.2.3, 3.2.1): an eight-chain network in parallel with Maxwell elements.
 //!
-//! The network ([`eight_chain`]) is hyperelastic and compressible; each Maxwell element
-//! ([`maxwell`]) is driven by the deviatoric part of the network's stress and forgets it over its
-//! relaxation time. Every function takes the Green–Lagrange strain, which elements make of the
-//! displacement gradient, and keeps its digits at small strain.
+//! The network ([`eight_chain`]) is hyperelastic and compressible; each Maxwell element ([`maxwell`]) is driven by the
+//! deviatoric stress of the network and relaxes. Every function takes the Green–Lagrange strain and keeps full
+//! precision at small strain.
 pub mod eight_chain;
 pub mod five_terms;
 pub mod langevin;
@@ -14,11 +13,11 @@ use eight_chain::EightChain;
 use maxwell::Maxwell;
 use thiserror::Error;
 
-/// A rubber.
+/// Constants of a rubber.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elastomer {
     pub network: EightChain,
-    /// Any number, none too; equal relaxation times are allowed.
+    /// Any number, including none; equal relaxation times are allowed.
     pub maxwell: Vec<Maxwell>,
 }
 
@@ -29,7 +28,7 @@ pub enum ElastomerError {
     #[error("the network locking number is {0}; it must be positive and finite")]
     Locking(f64),
     #[error(
-        "the network locking number is {0}; with the exact inverse Langevin function it must lie above 1: at 1 the \
+        "the network locking number is {0}; with the exact inverse Langevin function it must be above 1: at 1 the \
          chains are straight in the undeformed rubber"
     )]
     LockedAtRest(f64),
@@ -39,20 +38,21 @@ pub enum ElastomerError {
     Gamma(f64),
     #[error("the relaxation time of a Maxwell element is {0} s; it must be positive and finite")]
     Tau(f64),
-    #[error("a step of {0} s; it must not be negative")]
+    #[error("the step is {0} s; it must not be negative")]
     Step(f64),
     #[error(
-        "the chains are stretched to {stretch:.4} of their length at rest; they are straight at {limit:.4}"
+        "the chain stretch is {stretch:.4}; it must be below the locking stretch {limit:.4}: reduce the load"
     )]
     Locked { stretch: f64, limit: f64 },
     #[error(
-        "a strain whose right Cauchy-Green tensor has the determinant {0:.3e} is that of no deformation"
+        "the determinant of the right Cauchy-Green tensor is {0:.3e}; it must be positive: \
+         no deformation has this strain"
     )]
     NoDeformation(f64),
 }
 
 impl Elastomer {
-    /// Whether its constants, which anyone may write, are those of a rubber.
+    /// Checks the constants.
     ///
     /// # Errors
     /// Those of [`EightChain::new`] and [`Maxwell::new`].
@@ -62,8 +62,7 @@ impl Elastomer {
         self.maxwell.iter().try_for_each(|m| Maxwell::new(m.gamma, m.tau).map(|_| ()))
     }
 
-    /// μ (Pa) that a strain meets which is faster than every Maxwell element: what explicit steps have
-    /// to be sized with.
+    /// Shear modulus μ (Pa) for strain rates faster than every Maxwell element; it sizes explicit steps.
     pub fn instantaneous_shear_modulus(&self) -> f64 {
         let sum: f64 = self.maxwell.iter().map(|element| element.gamma).sum();
         (1.0 + sum) * self.network.shear_modulus()

@@ -1,4 +1,4 @@
-//! Rubbers of the source by name: facts, with the table they are from.
+//! Rubbers of the dissertation, by table.
 
 use super::Elastomer;
 use super::eight_chain::{ChainPull, EightChain};
@@ -23,15 +23,15 @@ pub const TABLE_3_1_MAXWELL: [[f64; 2]; 14] = [
 ];
 
 fn rubber(modulus: f64) -> Elastomer {
-    // Locking number and bulk modulus are the same in both tables.
+    // Both tables have the same locking number and bulk modulus.
     let (locking, bulk) = (8.0, 100.0 * modulus);
     let network = EightChain { modulus, locking, bulk, pull: ChainPull::FiveTerms };
     let maxwell = TABLE_3_1_MAXWELL.map(|[gamma, tau]| Maxwell { gamma, tau }).to_vec();
     Elastomer { network, maxwell }
 }
 
-/// The chloroprene rubber of 2.3.1 and Table 2.3. The source says that its Maxwell constants were
-/// adjusted and does not print them; those of Table 3.1 stand in for them.
+/// Chloroprene rubber of 2.3.1 and Table 2.3. The dissertation adjusted its Maxwell constants but does not print them;
+/// those of Table 3.1 are used.
 pub fn table_2_3() -> Elastomer {
     rubber(0.324e6)
 }

@@ -1,8 +1,8 @@
-//! Order of elimination by nested dissection: a body is cut in two by as few nodes as will do, these
-//! come last, and each part is cut again (A. George, SIAM J. Numer. Anal. 10 (1973) 345).
+//! Elimination order by nested dissection: each part is divided by a small separator, which is eliminated last (A.
+//! George, SIAM J. Numer. Anal. 10 (1973) 345).
 //!
-//! The cut is looked for about the middle of the part along a principal axis of its nodes' places,
-//! where a smallest separator is found exactly; see [`crate::numeric::sparse::separator`].
+//! The separator is searched around the middle of the part along a principal axis of its nodes' positions; a smallest
+//! separator of this band is found exactly, see [`crate::numeric::sparse::separator`].
 
 use crate::kinematics::vec3::{Vec3, dot};
 use crate::numeric::sparse::graph::Graph;
@@ -10,40 +10,40 @@ use crate::numeric::sparse::minimum_degree::minimum_degree;
 use crate::numeric::sparse::separator::{Cut, Side, smallest_cuts};
 use nalgebra::{Matrix3, SymmetricEigen};
 
-/// Parts of at most so many nodes are left to minimum degree.
+/// Largest part that is ordered by minimum degree instead, nodes.
 const LEAF: usize = 60;
-/// The part of the nodes on each side of the middle, along the axis, among which a cut is looked for.
+/// Fraction of the nodes on each side of the middle in which separators are searched.
 const BAND: f64 = 0.12;
-/// Axes are tried whose plain cut through the middle is at most so much larger than the smallest one.
+/// Axes are tried if their plain cut through the middle exceeds the smallest one by at most this factor.
 const WORTH_A_TRY: f64 = 1.25;
 
-/// Nodes in the order of elimination.
+/// Nodes in elimination order.
 pub fn nested_dissection(graph: &Graph, places: &[Vec3]) -> Vec<u32> {
     let count = graph.nodes();
-    let mut work = Work {
+    let mut dissection = Dissection {
         graph,
         places,
         side: vec![Side::Outside; count],
         index: vec![0; count],
         order: Vec::with_capacity(count),
     };
-    // Parts still to be ordered, the last one first; a separator waits below its two parts.
+    // Parts still to be ordered, last in first out; a separator is below its two parts.
     let mut waiting = vec![Part::Body((0..count as u32).collect())];
     while let Some(part) = waiting.pop() {
         match part {
-            Part::Separator(nodes) => work.order.extend(nodes),
-            Part::Body(nodes) if nodes.len() <= LEAF => work.leaf(nodes),
-            Part::Body(nodes) => match work.cut(&nodes) {
+            Part::Separator(nodes) => dissection.order.extend(nodes),
+            Part::Body(nodes) if nodes.len() <= LEAF => dissection.leaf(nodes),
+            Part::Body(nodes) => match dissection.cut(&nodes) {
                 Some(cut) => {
                     waiting.push(Part::Separator(cut.separator));
                     waiting.push(Part::Body(cut.high));
                     waiting.push(Part::Body(cut.low));
                 }
-                None => work.leaf(nodes),
+                None => dissection.leaf(nodes),
             },
         }
     }
-    work.order
+    dissection.order
 }
 
 enum Part {
@@ -51,7 +51,7 @@ enum Part {
     Separator(Vec<u32>),
 }
 
-struct Work<'a> {
+struct Dissection<'a> {
     graph: &'a Graph,
     places: &'a [Vec3],
     side: Vec<Side>,
@@ -59,13 +59,13 @@ struct Work<'a> {
     order: Vec<u32>,
 }
 
-impl Work<'_> {
+impl Dissection<'_> {
     fn leaf(&mut self, nodes: Vec<u32>) {
         let local = minimum_degree(&self.graph.permuted(&nodes));
         self.order.extend(local.iter().map(|at| nodes[*at as usize]));
     }
 
-    /// The best of some cuts; nothing where none leaves two parts.
+    /// Cheapest of several cuts; `None` if no cut leaves two parts.
     fn cut(&mut self, nodes: &[u32]) -> Option<Cut> {
         let mut best: Option<(f64, Cut)> = None;
         let mut tries: Vec<(usize, Vec<u32>)> = principal_axes(self.places, nodes)
@@ -83,11 +83,11 @@ impl Work<'_> {
                 if low * high == 0.0 {
                     continue;
                 }
-                // Work grows with the separator and with uneven parts.
+                // Cost increases with the separator and with the imbalance of the parts.
                 let uneven = (low + high).powi(2) / (4.0 * low * high);
-                let price = cut.separator.len() as f64 * uneven;
-                if best.as_ref().is_none_or(|(least, _)| price < *least) {
-                    best = Some((price, cut));
+                let cost = cut.separator.len() as f64 * uneven;
+                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    best = Some((cost, cut));
                 }
             }
         }
@@ -97,7 +97,7 @@ impl Work<'_> {
         best.map(|(_, cut)| cut)
     }
 
-    /// Nodes of the lower half that touch the upper one.
+    /// Number of nodes in the lower half adjacent to the upper half.
     fn plain_size(&mut self, sorted: &[u32]) -> usize {
         let (low, high) = sorted.split_at(sorted.len() / 2);
         low.iter().for_each(|node| self.side[*node as usize] = Side::Low);
@@ -119,8 +119,7 @@ impl Work<'_> {
                 _ => Side::High,
             };
         }
-        // The low side may touch the high one across the band: then those of the low side that do
-        // belong to the band.
+        // Nodes of the low side that are adjacent to the high side across the band are added to the band.
         let mut middle: Vec<u32> = sorted[from..to].to_vec();
         for node in &sorted[..from] {
             let across = |other: &u32| self.side[*other as usize] == Side::High;
@@ -141,7 +140,7 @@ impl Work<'_> {
     }
 }
 
-/// Of the nodes' places about their mean, the longest extent first.
+/// Principal axes of the nodes' positions, longest extent first.
 fn principal_axes(places: &[Vec3], nodes: &[u32]) -> [Vec3; 3] {
     let count = nodes.len() as f64;
     let mut mean = [0.0; 3];

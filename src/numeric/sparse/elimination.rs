@@ -1,36 +1,35 @@
-//! What a Cholesky factor of the stiffness of a mesh will look like, from the mesh alone.
+//! Symbolic Cholesky factorisation of the stiffness of a mesh.
 //!
-//! Elimination works on nodes; each has up to three unknowns, which share their neighbours. Columns of
-//! the factor with the same rows are kept together as one dense block (a supernode), wide ones cut
-//! into panels.
+//! Elimination works on nodes; each has up to three unknowns with the same neighbours. Columns of the factor with the
+//! same rows form one dense block (a supernode); wide blocks are divided into panels.
 
 use crate::numeric::sparse::graph::Graph;
 use std::ops::Range;
 
-/// Unknowns of a panel at most: what dense products need to run at full speed. Narrower ones leave less
-/// of the diagonal blocks' empty upper triangle stored.
+/// Maximum number of unknowns in a panel, enough for dense products to run at full speed. Narrower panels store less of
+/// the empty upper triangle of the diagonal blocks.
 const PANEL: usize = 128;
-/// Two supernodes become one where so many unknowns at most then have at most this part of zeros.
+/// Two supernodes are merged if the result has at most this many unknowns and this fraction of zeros.
 const MERGE: [(usize, f64); 4] = [(8, 1.0), (24, 0.5), (72, 0.1), (usize::MAX, 0.05)];
 
 const NONE: u32 = u32::MAX;
 
-/// Adjacent columns of the factor as one dense block of `columns` by all its rows.
+/// Adjacent columns of the factor as one dense block with all their rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// First unknown.
     pub first: usize,
     pub columns: usize,
-    /// Rows right below the diagonal block that belong to the rest of the same supernode.
+    /// Rows just below the diagonal block that belong to the same supernode.
     pub inner: usize,
     /// The other rows, in [`Elimination::rows`].
     pub outer: Range<usize>,
-    /// Where its values begin in the factor.
+    /// Index of the first value in the factor.
     pub values: usize,
 }
 
 impl Panel {
-    /// Rows in all, those of the diagonal block too.
+    /// Total number of rows, including those of the diagonal block.
     pub fn height(&self) -> usize {
         self.columns + self.inner + self.outer.len()
     }
@@ -39,36 +38,36 @@ impl Panel {
         self.height() * self.columns
     }
 
-    /// Multiplications and additions that its columns cause: as many as the square of the rows from
+    /// Multiply–add operations caused by the panel's columns: for each column, the square of the number of rows from
     /// the diagonal on.
     pub fn operations(&self) -> f64 {
         (0..self.columns).map(|column| ((self.height() - column) as f64).powi(2)).sum()
     }
 }
 
-/// The structure of a factor.
+/// Structure of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elimination {
     pub panels: Vec<Panel>,
-    /// Unknowns below the supernodes, ascending for each.
+    /// Row unknowns below the supernodes, ascending for each.
     pub rows: Vec<u32>,
-    /// Values that the factor stores.
+    /// Number of values stored in the factor.
     pub fill: usize,
-    /// Multiplications and additions of a factorisation.
+    /// Multiply–add operations of a factorisation.
     pub operations: f64,
-    /// Largest product that one panel owes another.
+    /// Largest update product between two panels, values.
     pub most_products: usize,
     pub unknowns: usize,
 }
 
-/// Structure and the nodes in its order.
+/// Structure of a factor and its elimination order.
 pub struct Ordered {
     pub order: Vec<u32>,
     pub elimination: Elimination,
 }
 
-/// Analyses elimination of the nodes in `order`, each with `weight` unknowns; nodes of one supernode
-/// are brought together, which changes no fill.
+/// Symbolic factorisation of the nodes in `order`, each with `weight` unknowns. Nodes of one supernode are made
+/// adjacent, which does not change the fill.
 pub fn analyse(graph: &Graph, order: &[u32], weight: impl Fn(u32) -> usize) -> Ordered {
     let permuted = graph.permuted(order);
     let weights: Vec<usize> = order.iter().map(|node| weight(*node)).collect();
@@ -95,7 +94,7 @@ pub fn analyse(graph: &Graph, order: &[u32], weight: impl Fn(u32) -> usize) -> O
     Ordered { order, elimination }
 }
 
-/// Parent of each node in the elimination tree: the first one that its elimination touches.
+/// Parent of each node in the elimination tree: the first later node in its column of the factor.
 fn tree(graph: &Graph) -> Vec<u32> {
     let count = graph.nodes();
     let mut parent = vec![NONE; count];
@@ -119,7 +118,7 @@ fn tree(graph: &Graph) -> Vec<u32> {
     parent
 }
 
-/// Unknowns in the first column of each node, its own ones included.
+/// Number of unknowns in the first column of each node, including its own.
 fn column_counts(graph: &Graph, parent: &[u32], weights: &[usize]) -> Vec<usize> {
     let mut counts = weights.to_vec();
     let mut seen = vec![NONE; weights.len()];
@@ -137,14 +136,14 @@ fn column_counts(graph: &Graph, parent: &[u32], weights: &[usize]) -> Vec<usize>
     counts
 }
 
-/// Children before parents, the longest child last: it is the one that may merge with its parent.
+/// Children before parents, the longest child last, because it can be merged with its parent.
 fn postorder(parent: &[u32], counts: &[usize]) -> Vec<u32> {
     let count = parent.len();
     let mut by_length: Vec<u32> = (0..count as u32).collect();
     by_length.sort_by_key(|node| counts[*node as usize]);
     let (mut first, mut next) = (vec![NONE; count], vec![NONE; count]);
     let mut roots = Vec::new();
-    // Put in front one after the other: the longest ends up first.
+    // Each child is inserted at the front, so that the longest one is first.
     for node in by_length {
         match parent[node as usize] {
             NONE => roots.push(node),
@@ -154,7 +153,7 @@ fn postorder(parent: &[u32], counts: &[usize]) -> Vec<u32> {
             }
         }
     }
-    // Parents before children, longest first, is the reverse of what is wanted.
+    // Reverse postorder: parents before children, longest first.
     let mut reversed = Vec::with_capacity(count);
     let mut stack = Vec::new();
     for root in roots {
@@ -174,18 +173,18 @@ fn postorder(parent: &[u32], counts: &[usize]) -> Vec<u32> {
     reversed
 }
 
-/// Adjacent nodes that are kept together.
+/// Adjacent nodes in one dense block.
 struct Supernode {
     first: usize,
     columns: usize,
-    /// Rows below its columns.
+    /// Number of rows below its columns.
     below: usize,
-    /// Zeros that it stores.
+    /// Number of stored zeros.
     zeros: usize,
 }
 
-/// First node of each supernode, and the number of nodes at the end. First those of one pattern, then
-/// children join parents where that stores few zeros: short columns are slow.
+/// First node of each supernode, and the number of nodes at the end. Nodes with one pattern are grouped first; then
+/// children are merged with parents if few zeros are stored, because short columns are slow.
 fn supernodes(parent: &[u32], counts: &[usize], weights: &[usize]) -> Vec<usize> {
     let mut exact: Vec<Supernode> = Vec::new();
     for node in 0..parent.len() {
@@ -290,7 +289,7 @@ fn structure(graph: &Graph, parent: &[u32], weights: &[usize], bounds: &[usize])
     Elimination { panels, rows, fill, operations, most_products, unknowns }
 }
 
-/// Rows still to come times those within one panel, the most of all pairs of panels.
+/// Maximum over all pairs of panels of the remaining rows times the rows within one panel.
 fn most_products(panels: &[Panel], rows: &[u32], unknowns: usize) -> usize {
     let mut owner = vec![0u32; unknowns];
     for (index, panel) in (0u32..).zip(panels) {

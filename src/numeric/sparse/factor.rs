@@ -1,5 +1,5 @@
-//! Cholesky factors by panels, left-looking: each panel takes from earlier ones what they owe it, and
-//! is then factorised as a dense block. Dense work by faer, one thread.
+//! Left-looking Cholesky factorisation by panels: each panel subtracts the updates of earlier panels and is then
+//! factorised as a dense block (faer, one thread).
 
 use crate::numeric::sparse::FactorError;
 use crate::numeric::sparse::elimination::{Elimination, Panel};
@@ -16,17 +16,17 @@ use std::sync::Arc;
 
 const NONE: u32 = u32::MAX;
 
-/// Cholesky factors; rows and columns in the order of elimination.
+/// Cholesky factor; rows and columns in elimination order.
 pub struct Factor {
     elimination: Arc<Elimination>,
     values: Vec<f64>,
 }
 
 impl Factor {
-    /// Factors of a matrix with places of the pattern that was analysed.
+    /// Factorises a matrix with the analysed pattern.
     ///
     /// # Errors
-    /// A matrix that is not positive definite; no memory.
+    /// If the matrix is not positive definite, or if memory is insufficient.
     pub fn new(
         elimination: &Arc<Elimination>,
         matrix: &SymmetricMatrix,
@@ -41,27 +41,27 @@ impl Factor {
         Ok(factor)
     }
 
-    /// Values that it stores.
+    /// Number of stored values.
     pub fn fill(&self) -> usize {
         self.values.len()
     }
 
-    /// New values on the same pattern.
+    /// Factorises a matrix with the same pattern.
     ///
     /// # Errors
-    /// As [`Factor::new`]; the factors are then of no use.
+    /// See [`Factor::new`]; the factor is then unusable.
     pub fn refactor(&mut self, matrix: &SymmetricMatrix) -> Result<(), FactorError> {
         let elimination = self.elimination.clone();
-        let mut owed = Owed::new(&elimination);
+        let mut pending = PendingUpdates::new(&elimination);
         for (index, panel) in elimination.panels.iter().enumerate() {
             let (before, from_here) = self.values.split_at_mut(panel.values);
             let block = &mut from_here[..panel.stored()];
             block.fill(0.0);
-            owed.locate(index);
-            owed.gather(matrix, block);
-            owed.take(before, block);
+            pending.locate(index);
+            pending.gather(matrix, block);
+            pending.apply(before, block);
             dense(panel, block)?;
-            owed.pass_on(index);
+            pending.enqueue_finished(index);
         }
         Ok(())
     }
@@ -71,8 +71,8 @@ impl Factor {
         self.solve_columns(right, 1);
     }
 
-    /// Solves in place for `columns` right-hand sides, one after the other in `right`. Many at once
-    /// read the factors once.
+    /// Solves in place for `columns` right-hand sides, stored one after the other in `right`. The factor is read once
+    /// for all of them.
     pub fn solve_columns(&self, right: &mut [f64], columns: usize) {
         let size = right.len() / columns;
         let tallest = self.elimination.panels.iter().map(Panel::height).max().unwrap_or(0);
@@ -125,7 +125,7 @@ impl Factor {
     }
 }
 
-/// Factorises a panel that nothing is owed any more.
+/// Factorises a panel to which all updates have been applied.
 fn dense(panel: &Panel, block: &mut [f64]) -> Result<(), FactorError> {
     let whole = MatMut::from_column_major_slice_mut(block, panel.height(), panel.columns);
     let (mut diagonal, lower) = whole.split_at_row_mut(panel.columns);
@@ -145,32 +145,32 @@ fn dense(panel: &Panel, block: &mut [f64]) -> Result<(), FactorError> {
     Ok(())
 }
 
-/// Which earlier panels owe the one at work something, and where its rows are.
-struct Owed<'a> {
+/// Pending updates of panels by earlier panels, and the row positions of the current panel.
+struct PendingUpdates<'a> {
     elimination: &'a Elimination,
-    /// The panel of each unknown.
+    /// Panel of each unknown.
     owner: Vec<u32>,
-    /// The first panel that owes each panel something, and the next one after each.
+    /// Linked lists of pending updates: first source panel of each panel, and the next one after each.
     first: Vec<u32>,
     next: Vec<u32>,
-    /// The row, among all rows of a panel, from which on it still owes.
+    /// First row, among all rows of a panel, whose updates are pending.
     reached: Vec<u32>,
-    /// Of the panel at work: which of its rows an unknown is.
+    /// Row of each unknown in the current panel.
     local: Vec<u32>,
     panel: usize,
-    /// Of what one panel owes: the rows it goes to, and the values.
+    /// Target rows and values of one update.
     places: Vec<u32>,
     products: Vec<f64>,
 }
 
-impl<'a> Owed<'a> {
+impl<'a> PendingUpdates<'a> {
     fn new(elimination: &'a Elimination) -> Self {
         let count = elimination.panels.len();
         let mut owner = vec![0; elimination.unknowns];
         for (index, panel) in (0u32..).zip(&elimination.panels) {
             owner[panel.first..panel.first + panel.columns].fill(index);
         }
-        Owed {
+        PendingUpdates {
             elimination,
             owner,
             first: vec![NONE; count],
@@ -187,7 +187,7 @@ impl<'a> Owed<'a> {
         &self.elimination.panels[self.panel]
     }
 
-    /// The unknown of a row of a panel.
+    /// Unknown of a panel's row.
     fn unknown(&self, panel: &Panel, row: usize) -> usize {
         let own = panel.columns + panel.inner;
         if row < own {
@@ -197,7 +197,7 @@ impl<'a> Owed<'a> {
         }
     }
 
-    /// Goes to a panel and marks its rows.
+    /// Selects a panel and marks its rows.
     fn locate(&mut self, index: usize) {
         self.panel = index;
         let panel = self.panel();
@@ -217,14 +217,14 @@ impl<'a> Owed<'a> {
         }
     }
 
-    /// Subtracts the products of all panels that owe the one at work, and hands them on.
-    fn take(&mut self, before: &[f64], block: &mut [f64]) {
+    /// Subtracts all pending updates of the current panel and enqueues their sources for later panels.
+    fn apply(&mut self, before: &[f64], block: &mut [f64]) {
         let panel = self.panel();
         let end = panel.first + panel.columns;
-        let mut giver = std::mem::replace(&mut self.first[self.panel], NONE);
-        while giver != NONE {
-            let index = giver as usize;
-            giver = self.next[index];
+        let mut source = std::mem::replace(&mut self.first[self.panel], NONE);
+        while source != NONE {
+            let index = source as usize;
+            source = self.next[index];
             let from = &self.elimination.panels[index];
             let start = self.reached[index] as usize;
             let height = from.height();
@@ -236,7 +236,7 @@ impl<'a> Owed<'a> {
             let whole = MatRef::from_column_major_slice(values, height, from.columns);
             let lower = whole.subrows(start, height - start);
             self.subtract(from, start, lower, columns, block);
-            self.hand_on(index, start + columns);
+            self.enqueue(index, start + columns);
         }
     }
 
@@ -257,7 +257,7 @@ impl<'a> Owed<'a> {
         let first = places[0] as usize;
         let right = lower.subrows(0, columns).transpose();
         if places[rows - 1] as usize - first + 1 == rows {
-            // No gap between its rows: straight into place.
+            // Contiguous rows: subtracted in place.
             let width = self.panel().columns;
             let whole = MatMut::from_column_major_slice_mut(block, height, width);
             let place = whole.subcols_mut(first, columns).subrows_mut(first, rows);
@@ -278,13 +278,13 @@ impl<'a> Owed<'a> {
         self.places = places;
     }
 
-    /// A finished panel joins those that owe the panel of its first row below.
-    fn pass_on(&mut self, index: usize) {
+    /// Enqueues a finished panel for the panel of its first row below.
+    fn enqueue_finished(&mut self, index: usize) {
         let columns = self.elimination.panels[index].columns;
-        self.hand_on(index, columns);
+        self.enqueue(index, columns);
     }
 
-    fn hand_on(&mut self, index: usize, row: usize) {
+    fn enqueue(&mut self, index: usize, row: usize) {
         let panel = &self.elimination.panels[index];
         if row < panel.height() {
             let to = self.owner[self.unknown(panel, row)] as usize;
@@ -294,7 +294,7 @@ impl<'a> Owed<'a> {
     }
 }
 
-/// The product of two blocks of which the upper triangle of the first rows is not needed.
+/// Product of two blocks; the upper triangle of the first rows is not needed.
 fn multiply(
     place: MatMut<'_, f64>,
     accum: Accum,

@@ -1,4 +1,4 @@
-//! Which nodes of a mesh share an element.
+//! Adjacency graph of the nodes of a mesh: nodes that share an element are neighbours.
 
 /// Neighbours of each node, ascending, without the node itself.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,13 +8,13 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// Of `count` nodes and the nodes of each element, in any order; `kept` nodes only.
+    /// Graph of `count` nodes from the nodes of each element, in any order, restricted to `kept` nodes.
     pub fn of_elements<'a>(
         count: usize,
         elements: impl Iterator<Item = &'a [u32]> + Clone,
         kept: impl Fn(u32) -> bool,
     ) -> Graph {
-        // Elements around each node first, so that no list is longer than it needs to be.
+        // Counts the elements around each node first, to allocate exact sizes.
         let mut around = vec![0usize; count + 1];
         for node in elements.clone().flatten() {
             around[*node as usize + 1] += 1;
@@ -58,7 +58,7 @@ impl Graph {
         &self.neighbours[self.starts[node as usize]..self.starts[node as usize + 1]]
     }
 
-    /// The same with the nodes `order[0]`, `order[1]`, … in that order, others left out.
+    /// The graph with the nodes `order[0]`, `order[1]`, … in that order; other nodes are removed.
     pub fn permuted(&self, order: &[u32]) -> Graph {
         let mut place = vec![u32::MAX; self.nodes()];
         for (at, node) in (0u32..).zip(order) {

@@ -2,21 +2,21 @@
 
 use std::sync::Arc;
 
-/// A place on or below the diagonal.
+/// Position of an entry on or below the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub row: usize,
     pub column: usize,
 }
 
-/// Places of the lower triangle, column by column; matrices of one pattern share it.
+/// Sparsity pattern of the lower triangle, column by column; shared by matrices.
 #[derive(Debug, PartialEq)]
 struct Pattern {
     starts: Vec<usize>,
     rows: Vec<u32>,
 }
 
-/// The lower triangle of a symmetric matrix, column by column.
+/// Lower triangle of a symmetric matrix, column by column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricMatrix {
     pattern: Arc<Pattern>,
@@ -24,8 +24,7 @@ pub struct SymmetricMatrix {
 }
 
 impl SymmetricMatrix {
-    /// Zero, with room for the rows of each column, ascending from the diagonal on, which `rows_of`
-    /// adds to the list that it is given.
+    /// Zero matrix. `rows_of` appends the rows of a column to a list, ascending from the diagonal.
     pub fn new(size: usize, mut rows_of: impl FnMut(usize, &mut Vec<u32>)) -> SymmetricMatrix {
         let mut starts = Vec::with_capacity(size + 1);
         starts.push(0);
@@ -43,7 +42,7 @@ impl SymmetricMatrix {
         self.pattern.starts.len() - 1
     }
 
-    /// Stored values, a measure of memory and work.
+    /// Number of stored values.
     pub fn stored(&self) -> usize {
         self.values.len()
     }
@@ -53,7 +52,7 @@ impl SymmetricMatrix {
     }
 
     /// # Panics
-    /// If there is no room at that place.
+    /// If the entry is not in the pattern.
     pub fn add(&mut self, Entry { row, column }: Entry, value: f64) {
         let start = self.pattern.starts[column];
         let of_column = &self.pattern.rows[start..self.pattern.starts[column + 1]];
@@ -61,17 +60,17 @@ impl SymmetricMatrix {
         self.values[start + at] += value;
     }
 
-    /// Adds `factor` times the product of a sparse vector with itself: unknowns, ascending, and values.
+    /// Adds `factor` times the outer product of a sparse vector (unknowns, ascending, and values) with itself.
     ///
     /// # Panics
-    /// If there is no room at one of the places.
+    /// If an entry is not in the pattern.
     pub fn add_square(&mut self, factor: f64, vector: &[(usize, f64)]) {
         for (at, &(column, value)) in vector.iter().enumerate() {
             let start = self.pattern.starts[column];
             let rows = &self.pattern.rows[start..self.pattern.starts[column + 1]];
             let mut place = 0;
             for &(row, other) in &vector[at..] {
-                // Both lists ascend.
+                // Both lists are ascending.
                 while rows[place] as usize != row {
                     place += 1;
                 }
@@ -80,10 +79,10 @@ impl SymmetricMatrix {
         }
     }
 
-    /// Adds `factor` times a matrix whose places are all among this one's.
+    /// Adds `factor` times a matrix whose pattern is contained in this one's.
     ///
     /// # Panics
-    /// If one is not.
+    /// If an entry is not in the pattern.
     pub fn add_scaled(&mut self, factor: f64, other: &SymmetricMatrix) {
         for column in 0..self.size() {
             for (row, value) in other.column(column) {
@@ -92,7 +91,7 @@ impl SymmetricMatrix {
         }
     }
 
-    /// Rows and values of a column, from the diagonal on.
+    /// Rows and values of a column, starting at the diagonal.
     pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let of = self.pattern.starts[column]..self.pattern.starts[column + 1];
         let rows = self.pattern.rows[of.clone()].iter().map(|row| *row as usize);

@@ -1,35 +1,35 @@
-//! Memory that factors of a given structure need.
+//! Memory estimate for solutions with a factor of known structure.
 
 use crate::numeric::sparse::elimination::{Elimination, Panel};
 use thiserror::Error;
 
-/// Bytes of a value, and of a value with its row.
+/// Bytes per value, and per value with its row.
 const VALUE: f64 = 8.0;
 const ENTRY: f64 = 12.0;
 
-/// What a solution holds next to its factors.
+/// Memory of a solution in addition to its factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Task {
-    /// Such as "statics".
+    /// Name for messages, such as "statics".
     pub name: &'static str,
     /// Stored values of sparse matrices.
     pub matrix: usize,
-    /// Vectors of all unknowns.
+    /// Number of vectors over all unknowns.
     pub vectors: usize,
-    /// Bytes of other things.
+    /// Other memory, bytes.
     pub other: usize,
-    /// Whether elements of four nodes would do as well, if worse; rubber locks in them.
+    /// True if four-node elements are a (less accurate) alternative; rubber locks in them.
     pub four_nodes: bool,
 }
 
-/// Memory that a solution by factors needs.
+/// Memory estimate of a solution with a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory {
     pub task: Task,
     pub unknowns: usize,
-    /// Values of the factor.
+    /// Number of values in the factor.
     pub fill: usize,
-    /// Bytes of the factor, and of all that the solution holds next to it at its peak.
+    /// Bytes of the factor, and peak bytes of all other data.
     pub factor_bytes: f64,
     pub other_bytes: f64,
 }
@@ -41,25 +41,25 @@ fn for_factors(bytes: f64) -> String {
     }
 }
 
-/// A solution that does not fit into memory.
+/// Error: a solution does not fit into memory.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
-    "{what} of {unknowns} unknowns needs {:.3} GB of memory{}. Allowed: {:.3} GB ({limit_from}). Hint: take a \
-     coarser mesh (edges twice as long need about a tenth){fewer_nodes}{other}, or allow more with --memory GB",
+    "{what} of {unknowns} unknowns needs {:.3} GB of memory{}. Allowed: {:.3} GB ({limit_from}). Hint: use a \
+     coarser mesh (twice the edge length needs about a tenth){fewer_nodes}{other}, or allow more with --memory GB",
     1e-9 * bytes, for_factors(*factor_bytes), 1e-9 * limit
 )]
 pub struct TooLarge {
-    /// Such as "statics".
+    /// Name of the solution, such as "statics".
     pub what: &'static str,
     pub unknowns: usize,
     pub bytes: f64,
-    /// None of factors that are there already.
+    /// Zero if the factor already exists.
     pub factor_bytes: f64,
-    /// Bytes that may be used.
+    /// Allowed memory, bytes.
     pub limit: f64,
-    /// Who set the limit.
+    /// Origin of the limit.
     pub limit_from: String,
-    /// Elements that need less, where they would do, and another way to solve it, where there is one.
+    /// Hints: elements that need less memory, and another solution method; empty if there is none.
     pub fewer_nodes: &'static str,
     pub other: &'static str,
 }
@@ -69,7 +69,7 @@ impl Memory {
         let unknowns = elimination.unknowns as f64;
         let structure = 4.0 * elimination.rows.len() as f64
             + (elimination.panels.len() * size_of::<Panel>()) as f64;
-        // Owner and place of each unknown, and the largest product.
+        // Owner and row of each unknown, and the largest update product.
         let work = 8.0 * unknowns + VALUE * elimination.most_products as f64;
         let vectors = VALUE * unknowns * task.vectors as f64;
         Memory {
@@ -81,16 +81,16 @@ impl Memory {
         }
     }
 
-    /// In addition to what the process holds already.
+    /// Additional memory of the solution, bytes.
     pub fn bytes(&self) -> f64 {
         self.factor_bytes + self.other_bytes
     }
 
-    /// Refuses what does not fit, where the process holds `held` bytes already and may take `limit`
-    /// in all.
+    /// Checks that the solution fits into memory: the process already uses `held` bytes and may use `limit` bytes in
+    /// total.
     ///
     /// # Errors
-    /// [`TooLarge`].
+    /// [`TooLarge`] if it does not fit.
     pub fn refuse_beyond(
         &self,
         held: f64,

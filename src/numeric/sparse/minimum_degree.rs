@@ -1,11 +1,11 @@
-//! Order of elimination by approximate minimum degree (faer's).
+//! Elimination order by approximate minimum degree (faer).
 
 use crate::numeric::sparse::graph::Graph;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-/// Nodes in the order of elimination.
+/// Nodes in elimination order.
 pub fn minimum_degree(graph: &Graph) -> Vec<u32> {
     let count = graph.nodes();
     let mut starts = Vec::with_capacity(count + 1);
@@ -28,7 +28,7 @@ pub fn minimum_degree(graph: &Graph) -> Vec<u32> {
     );
     match found {
         Ok(_) => forward.into_iter().map(|node| node as u32).collect(),
-        // Only an index that overflows fails, which a u32 of nodes in a usize cannot; any order is sound.
+        // Fails only on index overflow, which cannot occur with u32 nodes in a usize; any order is valid.
         Err(_) => (0..count as u32).collect(),
     }
 }

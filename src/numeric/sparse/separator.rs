@@ -1,52 +1,51 @@
-//! The fewest nodes that part a graph, by Menger's theorem: as many as there are paths without a
-//! common node between its two sides (Dinic's method for maximum flow, every node carrying one).
+//! Smallest vertex separators by Menger's theorem: as many nodes as node-disjoint paths between the two sides (maximum
+//! flow by Dinic's method, node capacity one).
 
 use crate::numeric::sparse::graph::Graph;
 use std::collections::VecDeque;
 
-/// Where a node of the part that is cut lies.
+/// Side of a node in a cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Not in the part at all.
+    /// Not in the part.
     Outside,
     Low,
-    /// May be cut.
+    /// May be in the separator.
     Band,
     High,
 }
 
-const NOBODY: u32 = u32::MAX;
-/// The merged low and high sides as neighbours of a path.
+const NONE: u32 = u32::MAX;
+/// The merged low and high sides as ends of a path.
 const LOW: u32 = u32::MAX - 1;
 const HIGH: u32 = u32::MAX - 2;
 
-/// Two smallest separators: the one next to the low side and the one next to the high side, and for
-/// each which nodes of the band then lie on the low side.
+/// Smallest separator, and the band's nodes on its low and high side.
 pub struct Cut {
     pub separator: Vec<u32>,
     pub low: Vec<u32>,
     pub high: Vec<u32>,
 }
 
-/// The flow of one search; arrays over the nodes of the band, which `index` numbers.
+/// Maximum flow of one search; arrays over the nodes of the band, numbered by `index`.
 struct Flow<'a> {
     graph: &'a Graph,
     side: &'a [Side],
     index: &'a [u32],
     band: &'a [u32],
-    /// The node before and after on the path through a node; [`NOBODY`] where there is no path.
+    /// Previous and next node on the path through a node; [`NONE`] without a path.
     before: Vec<u32>,
     after: Vec<u32>,
     touches_low: Vec<bool>,
     touches_high: Vec<bool>,
-    /// Distance from the low side of entrance (even) and exit (odd) of each node.
+    /// Distance of the entrance (even) and exit (odd) of each node from the low side.
     level: Vec<u32>,
-    /// Which neighbour an exit tries next.
+    /// Next neighbour to try from each end.
     tried: Vec<u32>,
 }
 
-/// Smallest cuts of `band`, whose nodes have the numbers `index`, between low and high side: next to
-/// the low one and next to the high one.
+/// Smallest separators of `band`, whose nodes are numbered by `index`, between low and high side: the one nearest to
+/// the low side and the one nearest to the high side.
 pub fn smallest_cuts(graph: &Graph, side: &[Side], index: &[u32], band: &[u32]) -> [Cut; 2] {
     let touches = |of: Side| -> Vec<bool> {
         let at = |node: &u32| graph.of(*node).iter().any(|other| side[*other as usize] == of);
@@ -57,8 +56,8 @@ pub fn smallest_cuts(graph: &Graph, side: &[Side], index: &[u32], band: &[u32]) 
         side,
         index,
         band,
-        before: vec![NOBODY; band.len()],
-        after: vec![NOBODY; band.len()],
+        before: vec![NONE; band.len()],
+        after: vec![NONE; band.len()],
         touches_low: touches(Side::Low),
         touches_high: touches(Side::High),
         level: Vec::new(),
@@ -72,7 +71,7 @@ pub fn smallest_cuts(graph: &Graph, side: &[Side], index: &[u32], band: &[u32]) 
             }
         }
     }
-    // After the last search `level` marks what the low side still reaches.
+    // After the last search `level` marks the ends reachable from the low side.
     let reached = std::mem::take(&mut flow.level);
     let near_low = flow.cut(
         |entrance, exit| match (entrance, exit) {
@@ -95,12 +94,12 @@ pub fn smallest_cuts(graph: &Graph, side: &[Side], index: &[u32], band: &[u32]) 
 }
 
 impl Flow<'_> {
-    /// Neighbours of a node within the band.
+    /// Neighbour number `which` of a node, or [`NONE`] if it is not in the band.
     fn neighbour(&self, at: u32, which: usize) -> Option<u32> {
         self.graph.of(self.band[at as usize]).get(which).map(|node| {
             match self.side[*node as usize] {
                 Side::Band => self.index[*node as usize],
-                _ => NOBODY,
+                _ => NONE,
             }
         })
     }
@@ -118,12 +117,12 @@ impl Flow<'_> {
         cut
     }
 
-    /// Breadth first from the low side; whether the high side is reached.
+    /// Breadth-first search from the low side; returns whether the high side is reached.
     fn levels(&mut self) -> bool {
         self.level = vec![u32::MAX; 2 * self.band.len()];
         let mut queue = VecDeque::new();
         for at in 0..self.band.len() {
-            // Where a path already comes from there too: any number may.
+            // Also where a path already starts: the low side has unlimited capacity.
             if self.touches_low[at] {
                 self.level[2 * at] = 0;
                 queue.push_back(2 * at as u32);
@@ -142,7 +141,7 @@ impl Flow<'_> {
             let (before, after) = (self.before[at as usize], self.after[at as usize]);
             if exit {
                 reached |= self.touches_high[at as usize] && after != HIGH;
-                if before != NOBODY {
+                if before != NONE {
                     visit(&mut self.level, 2 * at);
                 }
                 for node in self.graph.of(self.band[at as usize]) {
@@ -150,7 +149,7 @@ impl Flow<'_> {
                         visit(&mut self.level, 2 * self.index[*node as usize]);
                     }
                 }
-            } else if before == NOBODY {
+            } else if before == NONE {
                 visit(&mut self.level, 2 * at + 1);
             } else if before != LOW {
                 visit(&mut self.level, 2 * before + 1);
@@ -159,30 +158,30 @@ impl Flow<'_> {
         reached
     }
 
-    /// Depth first along rising levels from the entrance of `start`; puts a path in place.
+    /// Depth-first search along increasing levels from the entrance of `start`; adds a path if it finds one.
     fn augment(&mut self, start: u32) -> bool {
-        // The way so far, as ends: entrances even, exits odd.
-        let mut way = vec![2 * start];
-        while let Some(&end) = way.last() {
+        // Ends of the path: entrances even, exits odd.
+        let mut path = vec![2 * start];
+        while let Some(&end) = path.last() {
             let (at, exit) = ((end / 2) as usize, end % 2 == 1);
             let rising =
                 |flow: &Self, to: u32| flow.level[to as usize] == flow.level[end as usize] + 1;
             let mut onward = None;
             if exit {
                 if self.touches_high[at] && self.after[at] != HIGH {
-                    self.lay(&way);
+                    self.add_path(&path);
                     return true;
                 }
                 loop {
                     let which = self.tried[end as usize];
                     self.tried[end as usize] += 1;
-                    // Its own entrance first, where a path may be taken back.
+                    // First its own entrance, to reverse an existing path.
                     let to = if which == 0 {
-                        (self.before[at] != NOBODY).then_some(2 * at as u32)
+                        (self.before[at] != NONE).then_some(2 * at as u32)
                     } else {
                         match self.neighbour(at as u32, which as usize - 1) {
                             None => break,
-                            Some(NOBODY) => None,
+                            Some(NONE) => None,
                             Some(other) if other == self.after[at] => None,
                             Some(other) => Some(2 * other),
                         }
@@ -195,28 +194,28 @@ impl Flow<'_> {
             } else if self.tried[end as usize] == 0 {
                 self.tried[end as usize] = 1;
                 let to = match self.before[at] {
-                    NOBODY => Some(2 * at as u32 + 1),
+                    NONE => Some(2 * at as u32 + 1),
                     LOW => None,
                     before => Some(2 * before + 1),
                 };
                 onward = to.filter(|to| rising(self, *to));
             }
             match onward {
-                Some(to) => way.push(to),
+                Some(to) => path.push(to),
                 None => {
-                    way.pop();
+                    path.pop();
                 }
             }
         }
         false
     }
 
-    /// Sends one more path along a way from the low side to an exit next to the high side.
-    fn lay(&mut self, way: &[u32]) {
-        // Links that the way takes back go first, in the order that leaves new ones standing.
-        let mut add = vec![(LOW, way[0] / 2)];
+    /// Adds a path from the low side to an exit adjacent to the high side.
+    fn add_path(&mut self, path: &[u32]) {
+        // Reversed links are removed first, so that new links are kept.
+        let mut add = vec![(LOW, path[0] / 2)];
         let mut drop = Vec::new();
-        for pair in way.windows(2) {
+        for pair in path.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             match (from % 2, to % 2) {
                 (1, 0) if from / 2 != to / 2 => add.push((from / 2, to / 2)),
@@ -224,10 +223,10 @@ impl Flow<'_> {
                 _ => {}
             }
         }
-        add.push((way[way.len() - 1] / 2, HIGH));
+        add.push((path[path.len() - 1] / 2, HIGH));
         for (from, to) in drop {
-            self.after[from as usize] = NOBODY;
-            self.before[to as usize] = NOBODY;
+            self.after[from as usize] = NONE;
+            self.before[to as usize] = NONE;
         }
         for (from, to) in add {
             if from != LOW {
@@ -239,7 +238,7 @@ impl Flow<'_> {
         }
     }
 
-    /// Ends from which the high side can still be reached, marked by 0.
+    /// Marks ends from which the high side is reachable by 0.
     fn reaching_high(&self) -> Vec<u32> {
         let mut marks = vec![u32::MAX; 2 * self.band.len()];
         let mut stack = Vec::new();
@@ -259,15 +258,15 @@ impl Flow<'_> {
             };
             let (before, after) = (self.before[at as usize], self.after[at as usize]);
             if exit {
-                // Reached from its own entrance, or by taking back the link to the next node.
-                if before == NOBODY {
+                // Reached from its own entrance, or by reversing the link to the next node.
+                if before == NONE {
                     visit(2 * at);
                 }
-                if after != NOBODY && after != HIGH {
+                if after != NONE && after != HIGH {
                     visit(2 * after);
                 }
             } else {
-                if before != NOBODY {
+                if before != NONE {
                     visit(2 * at + 1);
                 }
                 for node in self.graph.of(self.band[at as usize]) {
