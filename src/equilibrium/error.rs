@@ -50,8 +50,9 @@ pub enum StaticsError {
         tilts: [f64; 2],
     },
     #[error(
-        "{spring} is pushed through the wall of its bushing: its sleeves are {across:.3e} m across from their places, the wall is \
-         {wall:.3e} m; check loads and their units, or take a thicker wall"
+        "{spring} is pushed through the wall of its bushing: its sleeves are displaced by {across:.3e} m \
+         across the axis, more than the wall of {wall:.3e} m; check loads and their units, or use a thicker \
+         wall"
     )]
     ThroughWall { spring: String, across: f64, wall: f64 },
     #[error("the outer race{of} in its bore: {source}")]

@@ -77,7 +77,7 @@ pub enum ShapesError {
          and their units"
     )]
     Range,
-    #[error("the shaft has a non-rigid motion without stiffness")]
+    #[error("the shaft has a zero-stiffness mode that is not a rigid-body motion")]
     Stiffness,
 }
 

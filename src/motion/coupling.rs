@@ -80,10 +80,10 @@ pub enum CouplingError {
     Solid { name: Option<String>, source: SolidError },
     #[error("bushing {name}: {source}")]
     Bushing { name: String, source: RubberError },
-    #[error("the start has no equilibrium: {0}")]
+    #[error("there is no static equilibrium to start from: {0}")]
     Start(#[from] StaticsError),
     #[error(
-        "{race} is fixed: it needs equations of its own to move in a housing (outer_race.motion)"
+        "{race} is fixed, so it cannot move in a housing; write motion = \"5-dof\" in [outer_race]"
     )]
     FixedRace { race: String },
     #[error(
@@ -93,7 +93,7 @@ pub enum CouplingError {
     #[error("{name} is {value}; it must be between 0 and {most}")]
     Option { name: &'static str, value: f64, most: f64 },
     #[error(
-        "no node of the housing{seat} carries a part of the bore's surface; check the set of the bore"
+        "no node of the housing{seat} is on a face of the bore surface; check the set of the bore"
     )]
     NoSeat { seat: String },
     #[error(

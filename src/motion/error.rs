@@ -21,7 +21,7 @@ pub enum SimulationError {
     )]
     NoErrorEstimate,
     #[error(
-        "errors are relative to overlaps of contacts, and there is no bearing; give a step instead of an accuracy"
+        "an accuracy is relative to contact deformation, and the scene has no bearing; give a step instead"
     )]
     NothingToMeasure,
     #[error(
@@ -121,7 +121,9 @@ pub enum SimulationError {
     )]
     SpringBeyond { spring: String, how: String, time: f64, step: u64 },
     #[error(
-        "{spring} is pushed through the wall of its bushing at t = {at} s, step {step}: its sleeves are {across:.3e} m across from          their places, the wall is {wall:.3e} m; check loads and their units, or take a thicker wall",
+        "{spring} is pushed through the wall of its bushing at t = {at} s, step {step}: its sleeves are \
+         displaced by {across:.3e} m across the axis, more than the wall of {wall:.3e} m; check loads and \
+         their units, or use a thicker wall",
         at = display_time(*time)
     )]
     ThroughWall { spring: String, across: f64, wall: f64, time: f64, step: u64 },

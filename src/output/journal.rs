@@ -28,16 +28,17 @@ pub enum Stopped {
 pub enum JournalError {
     #[error("cannot read {}: {source}", path.display())]
     Read { path: PathBuf, source: InputError },
-    #[error("{} is not the state of such a run: {source}; start anew (--fresh)", path.display())]
+    #[error("{} is not the saved state of this kind of run: {source}; start again with --fresh", path.display())]
     Json { path: PathBuf, source: serde_json::Error },
     #[error(
-        "{} was written by version {found}; this is {}, whose bits may differ; start anew (--fresh)",
+        "{} was written by version {found}; results of this version, {}, may not be bitwise identical; start \
+         again with --fresh",
         path.display(), env!("CARGO_PKG_VERSION")
     )]
     Version { path: PathBuf, found: String },
     #[error(
-        "{} has the form of another version of this program; finish the run with that one, or start anew \
-         (--fresh)",
+        "{} has the format of another version of this program; finish the run with that version, or start \
+         again with --fresh",
         path.display()
     )]
     Form { path: PathBuf },

@@ -178,7 +178,8 @@ pub enum Problem {
     NotThreeValues { found: usize, example: String },
 
     #[error(
-        "{written} does not come after the entry before it. Allowed: strictly increasing. Hint: put the entries in order"
+        "{written} is not larger than the entry before it. Allowed: strictly increasing values. Hint: put the \
+         entries in order"
     )]
     NotIncreasing { written: String },
 

@@ -57,7 +57,10 @@ pub enum BoreError {
          take it; hold the race axially or turn the load"
     )]
     AxialForce { force: f64 },
-    #[error("a moment of {moment:.3e} N m turns the outer race in its bore, which has no friction")]
+    #[error(
+        "the outer race has a load of {moment:.3e} N m about its axis, and the bore has no friction to resist \
+     it; remove that moment"
+    )]
     AxialMoment { moment: f64 },
     #[error(
          "the bore does not hold the outer race: its loads have {} from its nominal position, and {} N of \
@@ -87,9 +90,11 @@ pub enum BoreError {
          housing, or a start in nominal positions (numerics.start = \"nominal\")"
     )]
     FarAcross { rounds: usize },
-    #[error("contact has not converged after {changes} changes of the contact nodes")]
+    #[error(
+        "contact does not converge: the set of contact nodes still changes after {changes} iterations"
+    )]
     NotSettled { changes: usize },
-    #[error("node {node} of the bore is in the contact list; the bore has {count} nodes")]
+    #[error("the contact list names bore node {node}, but the bore has only {count} nodes")]
     NoSuchNode { node: usize, count: usize },
     #[error(transparent)]
     Factor(#[from] FactorError),

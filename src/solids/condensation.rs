@@ -62,7 +62,9 @@ pub enum CondenseError {
     Factor(FactorError),
     #[error("{}", free_text(pivot))]
     Free { pivot: Pivot },
-    #[error("the bore has no node under the race ({bore} in all); check its width and position")]
+    #[error(
+        "none of the {bore} bore nodes is within the width of the race; check the width and position of the race"
+    )]
     NoNodes { bore: usize },
     #[error(
         "node {node} has a prescribed displacement of {value:.3e} m; a condensed housing is fixed at \

@@ -36,7 +36,9 @@ pub enum SolidShaftError {
     Solid(#[from] SolidError),
     #[error(transparent)]
     Factor(#[from] FactorError),
-    #[error("no element of the shaft ends at {at} m: a station needs a layer of nodes")]
+    #[error(
+        "no element of the shaft ends at {at} m: a bearing, load or disc needs a layer of nodes at its position"
+    )]
     NoLayer { at: f64 },
     #[error("the section at {at} m has its centre {off} m off the axis X")]
     OffAxis { at: f64, off: f64 },
@@ -45,7 +47,9 @@ pub enum SolidShaftError {
           two directions across the axis; at most {most:.0e} is allowed"
     )]
     NotRound { what: &'static str, part: f64, most: f64 },
-    #[error("segments of different materials: a shaft of tetrahedra has one")]
+    #[error(
+        "the segments have different materials; a shaft meshed with tetrahedra has one material"
+    )]
     Materials,
 }
 

@@ -41,7 +41,9 @@ impl ModeOptions {
 pub enum ModeError {
     #[error(transparent)]
     Factor(#[from] FactorError),
-    #[error("{wanted} modes are asked for, but the body has only {unknowns} free components")]
+    #[error(
+        "{wanted} modes are requested, but the body has only {unknowns} free degrees of freedom"
+    )]
     TooMany { wanted: usize, unknowns: usize },
     #[error("the body has more than {most} natural modes up to {frequency} Hz")]
     MoreThan { most: usize, frequency: f64 },

@@ -29,7 +29,8 @@ pub enum RotorError {
     #[error("no stiffness: a rigid shaft that moves freely has no critical speed")]
     Unheld,
     #[error(
-        "a free motion has equal moments of inertia about and across the axis: it whirls once a turn at every speed"
+        "a body without supports has equal moments of inertia about its axis and across it: its whirl has the \
+         frequency of rotation at every speed, so that there is no critical speed"
     )]
     Sphere,
 }

@@ -5,7 +5,7 @@ mod frequencies {
 
     #[test]
     fn passes_of_both_races_add_up_to_one_a_ball_and_turn() {
-        // Observed from the cage the races turn at −cage and 1 − cage.
+        // Seen from the cage the races turn at −cage and 1 − cage.
         let frequencies = ratios(8, 5.955e-3, 26.0e-3, 0.3);
         let sum = frequencies.ball_pass_outer + frequencies.ball_pass_inner;
         assert!((sum - 8.0).abs() <= 1e-14, "sum {sum}");

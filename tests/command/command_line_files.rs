@@ -391,7 +391,7 @@ fn nothing_from_a_file_commands_the_terminal() {
         }
         said += &of;
     }
-    // Observed as what it is.
+    // Seen as what it is.
     assert!(said.contains("\\u001b[2J") && said.contains("\\u009b"), "{said}");
 }
 

@@ -269,7 +269,7 @@ fn a_plan_foretells_the_windows_of_a_run() {
         assert_eq!(work["windows"], windows, "{plan}");
         assert_eq!(step["housing_steps_a_window"], each, "{plan}");
         assert_eq!(work["housing_steps"], windows * each, "{plan}");
-        let window = value(&step["window"]);
+        let window = value(&step["coupling_step"]);
         assert!(after.starts_with(&format!("{window:.3e} s")), "{window} s: {plan}");
         let time = windows as f64 * window;
         let end = last(&out.join("series.csv"), "time");

@@ -231,9 +231,9 @@ fn of_modes() {
 fn the_page_of_warnings_is_that_of_the_table() {
     let mut page = String::from(
         "# Warnings\n\nMade by `WARNINGS=write cargo test --test command warnings`; do not edit by hand.\n\n\
-         A warning is printed as `warning[CODE]: text`. `summary.json` has a list `warnings` of `{\"code\", \"text\"}`, `sweep.json` each code once \
-         with its first point and the number of points. The column `warnings` of `sweep.csv` holds the numbers of the codes, two digits each: 305 \
-         is W03 and W05. Scripts should look at the code; texts may change.\n",
+         A warning is printed as `warning[CODE]: text`. `summary.json` has a list `warnings` of `{\"code\", \"text\"}`. `sweep.json` lists each code once, \
+         with the first point that has it and the number of such points. The column `warnings` of `sweep.csv` has the numbers of the codes, two digits \
+         each, without a leading zero: 305 stands for W03 and W05. Scripts should look at the code; texts may change.\n",
     );
     for entry in &TABLE {
         page += &format!(

@@ -267,7 +267,7 @@ fn a_spring_that_is_let_go_takes_nothing_along() {
             nodes: &nodes,
             displacement: &displacement,
         };
-        let contact = friction.push(&pressed, &mut forces);
+        let contact = friction.step(&pressed, &mut forces);
         (contact.touching, friction.sum)
     };
     push(RADIUS + TIGHT, 0.0);

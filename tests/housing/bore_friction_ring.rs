@@ -112,7 +112,7 @@ fn a_coefficient_of_zero_is_no_friction_bit_for_bit() {
             housed.advance().unwrap();
         }
         let snapshot = housed.snapshot().unwrap();
-        let pulls = only(&housed).friction.as_ref().map_or(0, |of| of.pulls);
+        let pulls = only(&housed).friction.as_ref().map_or(0, |of| of.updates);
         (bits_of(&housed), snapshot.residual.to_bits(), snapshot.turned_over.to_bits(), pulls)
     };
     let zero = run(Some(BoreFriction { coefficient: 0.0, ..LAW }));
@@ -166,7 +166,7 @@ fn a_motion_of_both_together_stretches_nothing() {
                 nodes: &nodes,
                 displacement: &displacement,
             };
-            friction.push(&pressed, &mut forces);
+            friction.step(&pressed, &mut forces);
             let seen = |v| pose.orientation.inverse() * Vector3::from(v);
             loads.push((
                 seen(friction.sum.force),

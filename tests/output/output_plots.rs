@@ -186,7 +186,7 @@ fn circle(svg: &str, fill: &str) -> [f64; 2] {
     })
 }
 
-/// Observed against the axial direction: Y to the right, Z up.
+/// Seen against the axial direction: Y to the right, Z up.
 #[test]
 fn azimuths_go_from_y_to_z_as_they_are_seen() {
     for degrees in [0.0f64, 60.0, 90.0, 200.0, 300.0] {

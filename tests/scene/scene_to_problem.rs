@@ -153,7 +153,7 @@ fn frequencies_count_at_the_contact_angle() {
     assert_close("cage", ours.cage, cage);
     assert_close("outer", ours.ball_pass_outer, 13.0 * cage);
     assert_close("inner", ours.ball_pass_inner, 13.0 * (1.0 - cage));
-    // Observed from the cage the outer circle passes the ball with cage · outer.
+    // Seen from the cage the outer circle passes the ball with cage · outer.
     assert_close("spin", ours.ball_spin, cage * outer / BALL);
 }
 

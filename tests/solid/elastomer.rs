@@ -2,7 +2,7 @@
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::{
-    DashpotFactors, Maxwell, StepFactors, carried, commit, complex_factor, curvature_error,
+    DashpotFactors, Maxwell, StepFactors, commit, complex_factor, curvature_error, relaxed_history,
     spring_energy,
 };
 use bearing_dynamics::ch2_housing::elastomer::{ElastomerError, named};
@@ -178,7 +178,7 @@ fn a_straight_course_is_exact_in_any_steps() {
 #[test]
 fn none_or_twice_the_same_element() {
     assert_eq!(StepFactors::of(&[], 0.1).unwrap().total_gain, 0.0);
-    assert_eq!(carried(&[], &[1.0; 6], &StepFactors::of(&[], 0.1).unwrap()), [-0.0; 6]);
+    assert_eq!(relaxed_history(&[], &[1.0; 6], &StepFactors::of(&[], 0.1).unwrap()), [-0.0; 6]);
     let whole = [Maxwell { gamma: 2.0, tau: 0.3 }];
     let halves = [Maxwell { gamma: 1.0, tau: 0.3 }; 2];
     let wave = |t: f64| (3.0 * t).sin();
@@ -198,7 +198,7 @@ fn the_search_and_the_commit_agree() {
     }
     let before: Sym3 = std::array::from_fn(|i| 4e5 * (i as f64 + 0.3).cos());
     let after: Sym3 = std::array::from_fn(|i| 5e5 * (i as f64 - 0.1).sin());
-    let past = carried(&history, &before, &factors);
+    let past = relaxed_history(&history, &before, &factors);
     commit(&mut history, &std::array::from_fn(|i| after[i] - before[i]), &factors);
     for i in 0..6 {
         let committed: f64 = history.iter().map(|h| h[i]).sum();

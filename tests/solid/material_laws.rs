@@ -2,7 +2,7 @@
 //! stress as the derivative of energy, tangent as the derivative of stress, rest without stress.
 
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
-use bearing_dynamics::ch2_housing::elastomer::maxwell::{Maxwell, StepFactors, carried};
+use bearing_dynamics::ch2_housing::elastomer::maxwell::{Maxwell, StepFactors, relaxed_history};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::strain::{
     Mat3, Sym3, Tangent, applied, cauchy, double_dot, full, green_lagrange,
@@ -43,7 +43,7 @@ fn with_history() -> Law {
     let elements = [Maxwell { gamma: 3.0, tau: 0.1 }, Maxwell { gamma: 0.7, tau: 2.0 }];
     let factors = StepFactors::of(&elements, 0.05).unwrap();
     let history = [[2e4, -1e4, 5e3, 1e4, -2e4, 3e3], [1e4, 2e4, 5e4, -1e4, 2e4, 1e3]];
-    let past = carried(&history, &[3e4, 1e4, -4e4, 2e3, 8e3, -1e3], &factors);
+    let past = relaxed_history(&history, &[3e4, 1e4, -4e4, 2e3, 8e3, -1e3], &factors);
     let gain = factors.total_gain;
     Law {
         name: "eight chains with Maxwell elements after a step",

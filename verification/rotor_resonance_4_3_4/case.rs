@@ -415,10 +415,6 @@ fn quarter_turns(context: &mut CaseContext, in_blocks: &Done) -> Result<(), Case
         style: Style::Lines,
         curves,
     })?;
-    context.figure(
-        "quarter_turns",
-        svg,
-        "Observed from the side, in pillow blocks, as in Fig. 4.22.",
-    );
+    context.figure("quarter_turns", svg, "Seen from the side, in pillow blocks, as in Fig. 4.22.");
     Ok(())
 }

@@ -210,7 +210,7 @@ fn beyond_natural(first_left_out: f64, above: impl Fn(f64) -> usize) -> Option<W
 fn moving_bodies(assembly: &Assembly, still: &StaticAssembly) -> Vec<MovingBody> {
     let of = |(index, (still, body)): (usize, (&StaticBody, &Body))| {
         let Place::Loaded(loaded) = &still.place else { return None };
-        let free = [0, 1, 2, 3, 4].map(|i| loaded.given(i).is_none());
+        let free = [0, 1, 2, 3, 4].map(|i| loaded.prescribed(i).is_none());
         Some(MovingBody { body: index, inertia: *body.inertia()?, free })
     };
     still.bodies.iter().zip(&assembly.bodies).enumerate().filter_map(of).collect()

@@ -44,7 +44,9 @@ pub enum Problem {
         "the file announces {claimed} {what}, but only {left} bytes follow; the file is damaged or truncated"
     )]
     Count { what: &'static str, claimed: u64, left: usize },
-    #[error("expected {expected}, found {found:?}; the counts before it may be wrong")]
+    #[error(
+        "expected {expected}, found {found:?}; the counts given earlier in the file may be wrong"
+    )]
     Expected { expected: String, found: String },
     #[error("the file has no {section} section")]
     MissingSection { section: &'static str },
@@ -63,7 +65,7 @@ pub enum Problem {
     #[error("set \"{set}\" refers to {kind} {tag}, which the file does not define")]
     UnknownMember { set: String, kind: &'static str, tag: u64 },
     #[error(
-        "the sets have too many members for a file of {length} bytes; ranges or groups repeat too often"
+        "the sets have more members than a file of {length} bytes can define; check for repeated ranges or groups"
     )]
     TooManyMembers { length: usize },
     #[error("set \"{name}\" is used before it is defined")]

@@ -164,7 +164,7 @@ pub(super) fn method(motion: &Motion) -> Option<&'static str> {
 pub(super) fn step(housed: &CoupledMotion) -> Part {
     let bodies = &housed.simulation;
     let mut section = Map::new();
-    section.insert("window".into(), quantity("window", housed.coupling_step, "s")?);
+    section.insert("coupling_step".into(), quantity("coupling_step", housed.coupling_step, "s")?);
     for part in &housed.solids {
         let (of, solid) = (prefix(&part.name), &part.solid);
         let kind = part.kind();

@@ -85,8 +85,8 @@ pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W01-indeterminate-position",
         title: "Position not determined",
-        meaning: "A body is not constrained in some directions, so its position in them is not unique. Frequencies and stiffnesses in these \
-                  directions are zero.",
+        meaning: "A body has no stiffness in some directions, so its position in these directions is arbitrary. \
+         Frequencies and stiffnesses in them are zero.",
         action: "Load or preload the bearing, add a spring, or prescribe these coordinates.",
     },
     Entry {
@@ -101,7 +101,8 @@ pub const TABLE: [Entry; 17] = [
         title: "Contact pressure above 4200 MPa",
         meaning: "The largest Hertz pressure exceeds 4200 MPa, at which ISO 76 expects permanent deformation of ball and raceway. The model \
                   is elastic.",
-        action: "Check loads, speeds, clearance and their units. Between two balls: add a cage, because nothing else keeps them apart.",
+        action: "Check loads, speeds, clearance and their units. If the pressure occurs between two balls, add a \
+         cage: nothing else keeps them apart.",
     },
     Entry {
         name: "W04-contact-past-shoulder",
@@ -133,17 +134,17 @@ pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W08-mesh-too-coarse",
         title: "Mesh too coarse",
-        meaning: "Stress jumps between elements (Zienkiewicz and Zhu) indicate that displacements or frequencies may be off by more than 2 %. \
-                  Stresses are less accurate than that.",
+        meaning: "The estimate of Zienkiewicz and Zhu, from the stress jumps between elements, gives an error of \
+         displacements or frequencies above 2 %. Stresses are less accurate than that.",
         action: "Refine the mesh at high stresses and in walls with fewer than three elements, or write `order = 2` for ten-node \
                  elements.",
     },
     Entry {
         name: "W09-four-node-locking",
         title: "Four-node elements of a nearly incompressible material",
-        meaning: "Four-node elements lock from Poisson's ratio 0.45 on: displacements may be a fraction of the true ones, on any mesh. \
-                  A bushing in explicit steps has such elements.",
-        action: "Write `order = 2` in the mesh table; for a bushing `method = \"implicit\"`, or compare with finer cells.",
+        meaning: "Four-node elements lock from Poisson's ratio 0.45 on: displacements may be a fraction of the true \
+         ones even on fine meshes. A bushing with `method = \"explicit\"` uses such elements.",
+        action: "Write `order = 2` in the mesh table. For a bushing write `method = \"implicit\"`.",
     },
     Entry {
         name: "W10-stress-above-elastic",
@@ -180,15 +181,16 @@ pub const TABLE: [Entry; 17] = [
     Entry {
         name: "W15-excitation-faster-than-fit",
         title: "Excitation above the fitted frequencies of a bushing",
-        meaning: "An excitation has a higher frequency than the highest one to which the springs of a bushing are fitted. Above it their \
-                  stiffness no longer increases.",
+        meaning: "An excitation has a higher frequency than the highest one to which the springs of a bushing are \
+         fitted. Above that frequency the stiffness of the springs no longer increases.",
         action: "Raise `spring.NAME.bushing.fastest`.",
     },
     Entry {
         name: "W16-beyond-kept-modes",
         title: "Result beyond the kept modes",
-        meaning: "A reduced shaft or housing is used beyond the range of its modes: a frequency above the kept ones, or a load on the bore \
-                  larger than that of its static correction modes.",
+        meaning: "A reduced shaft or housing is used outside its range. Either an excitation has a frequency above \
+         those of the kept modes, or the load on the bore exceeds the load for which the static correction \
+         modes were computed.",
         action: "Keep more modes (`body.NAME.beam.modes_to`, `housing.modes_to`), or raise `housing.bore_load`.",
     },
     Entry {

@@ -25,7 +25,7 @@ pub enum SolidSetupError {
     Material(#[from] ElasticError),
     #[error(transparent)]
     Rubber(#[from] RubberError),
-    #[error("solid.material.law: this needs a linear elastic solid")]
+    #[error("solid.material.law: this command supports linear elastic solids only")]
     OtherLaw,
     #[error(
         "solid.mesh.file: the mesh has four-node elements; {FOUR_NODES_LOCK}. Write `order = 2` in [solid.mesh]"

@@ -15,7 +15,7 @@ pub enum RubberError {
     Material(#[from] ElastomerError),
     #[error("the {what} is {value}; it must be positive and finite")]
     Option { what: &'static str, value: f64 },
-    #[error("the pulsation is {0} rad/s; it must not be negative")]
+    #[error("the angular frequency is {0} rad/s; it must not be negative")]
     Pulsation(f64),
     #[error(
         "{vectors} vectors leave a change of {change:.1e} in the complex stiffness where {tolerance:.1e} is \
@@ -24,13 +24,13 @@ pub enum RubberError {
     NotSettled { vectors: usize, change: f64, tolerance: f64 },
     #[error("elements of four nodes; rubber needs ten-node elements")]
     FourNodes,
-    #[error("no memory for the factors of the stiffness, {:.2} GB", 1e-9 * bytes)]
+    #[error("not enough memory for the factorised stiffness matrix, {:.2} GB", 1e-9 * bytes)]
     NoMemory { bytes: f64 },
     #[error("the body or a part of it is free to move; fix it")]
     Free,
     /// Steps were halved down to the smallest.
     #[error(
-        "no equilibrium was found after t = {} s: a step of {step:.3e} s ended where {failure}",
+        "no equilibrium was found after t = {} s; the last step tried was {step:.3e} s: {failure}",
         rounded(*time)
     )]
     NoEquilibrium { time: f64, step: f64, failure: StepFailure },
@@ -54,7 +54,7 @@ pub enum StepFailure {
     Unstable,
     #[error("forces are not finite")]
     NotFinite,
-    #[error("a step would change strains by {strain:.3} in the mean")]
+    #[error("the step changes strains by {strain:.3} (root mean square), too much for one step")]
     Far { strain: f64 },
     #[error(
         "{:.2} % of the work of a step is lost, however short it is: the rubber jumps to another equilibrium", 100.0 * part

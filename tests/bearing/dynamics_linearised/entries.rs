@@ -136,15 +136,15 @@ fn races_hold(name: &str, point: &mut Point) {
             [along, across, about * 1e-3]
         };
         let size: f64 =
-            contact.carried[0].iter().map(|row| row[lane] * row[lane]).sum::<f64>().sqrt();
+            contact.slip_change[0].iter().map(|row| row[lane] * row[lane]).sum::<f64>().sqrt();
         let spun: f64 =
-            contact.carried[2].iter().map(|row| row[lane] * row[lane]).sum::<f64>().sqrt();
+            contact.slip_change[2].iter().map(|row| row[lane] * row[lane]).sum::<f64>().sqrt();
         for i in 0..3 {
             let entry = layout.ball(POSITION + i) + ball;
             let found = point.slope(1e-8, |state, by| state[entry] += by, slips);
             for row in 0..3 {
                 let (per, of) = if row == 2 { (1e-3, spun) } else { (1.0, size) };
-                let expected = per * contact.carried[row][i][lane];
+                let expected = per * contact.slip_change[row][i][lane];
                 close(found[row], expected, per * of, 5e-3, &|| {
                     what(&format!("carried {row} {i}"))
                 });

@@ -36,7 +36,7 @@ impl RollingBall {
     /// Orbital speed over the inner race's, outer race at rest, for a ball whose own axis is tilted
     /// by `roll` out of the bearing's axis.
     ///
-    /// Observed from the orbiting centre the outer race passes at ω_c (R + a cos α) and the inner one,
+    /// Seen from the orbiting centre the outer race passes at ω_c (R + a cos α) and the inner one,
     /// the other way, at (Ω − ω_c)(R − a cos α); the ball's surface passes each contact at its spin
     /// times a cos(roll − α).
     pub fn orbit_ratio(&self, roll: f64) -> f64 {
