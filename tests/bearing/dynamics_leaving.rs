@@ -187,7 +187,7 @@ fn parts_inside_each_other_end_the_run() {
     let error = Simulation::new(problem, fixed_step(1e-9, Start::Nominal)).err().unwrap();
     let text = error.to_string();
     assert!(matches!(error, SimulationError::Inside { step: 0, .. }), "{text}");
-    assert!(text.contains("too much: z of the inner race by -0.0015 m"), "{text}");
+    assert!(text.contains("too large: z of the inner race by -0.0015 m"), "{text}");
 }
 
 /// A load that comes later, on races that nothing holds.

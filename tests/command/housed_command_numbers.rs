@@ -160,9 +160,9 @@ fn balls_press_outwards_in_a_run_and_not_in_statics() {
             "2000 rpm",
             force,
             "does  centrifugal force on balls   in `run`, because the cage rotates; \
-                             `statics` leaves it out",
+                             `statics` omits it",
         ),
-        ("0 rpm", 0.0, "skips centrifugal force on balls   not asked for"),
+        ("0 rpm", 0.0, "skips centrifugal force on balls   not requested"),
     ] {
         let out = place.path(&speed.replace(' ', "_"));
         succeed(into_folder("run", &scene(speed), &out, &[]));

@@ -30,7 +30,7 @@ fn a_rough_bore_holds_its_race_and_tells_of_it() {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(
-        said.contains("housing.axial = free (friction holds the race along its axis)"),
+        said.contains("housing.axial = free (friction supports the race along its axis)"),
         "{said}"
     );
     let said = succeed(command("plan", &scene, &[]));

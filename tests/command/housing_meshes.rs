@@ -47,17 +47,14 @@ fn where_a_mesh_is_put_is_told() {
     // Beyond its end face: most of the race hangs out of it.
     let text = put(&with_mesh(&place, &elsewhere(), 1, ""), &PUT.replace("\"10 mm\"", "\"-4 mm\""));
     let message = refused(&place, &text.replace("[housing]", "[housing]\nwidth = \"20 mm\""));
-    for words in ["lie beside the bore", "solid.mesh.origin"] {
+    for words in ["are beside the bore", "solid.mesh.origin"] {
         assert!(message.contains(words), "{message}");
     }
     // Its axis beside the race's.
     let text =
         put(&with_mesh(&place, &elsewhere(), 1, ""), &PUT.replace("\"40 mm\"", "\"40.1 mm\""));
     let said = succeed(command("check", &place.scene("scene.toml", &text), &[]));
-    assert!(
-        said.contains("lies 100.0000 um beside the race's centre, more than the fit"),
-        "{said}"
-    );
+    assert!(said.contains("is 100.0000 um off the race's centre, more than the fit"), "{said}");
 }
 
 /// What is packed can be solved where the mesh it was made of is gone; a mesh that is elsewhere cannot be packed.

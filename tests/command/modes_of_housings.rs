@@ -51,7 +51,7 @@ fn natural_shapes_of_housings_are_counted() {
     let with = |more: &[&str]| {
         let text =
             said(&bearing(&[&["modes", scene, "--set", "housing.method=reduced"], more].concat()));
-        let shape = |line: &&str| line.contains("housing_shape_");
+        let shape = |line: &&str| line.contains("housing_mode_");
         (text.lines().filter(shape).count(), text)
     };
     let (dozen, text) = with(&[]);

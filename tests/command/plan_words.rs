@@ -20,9 +20,9 @@ fn said_of(command: &[&str], shipped: &str, changes: &[(&str, &str)]) -> String 
 fn plans_of_shafts_have_plain_words() {
     let said = said_of(&["plan"], "rotor_run_up.toml", &[]);
     for part in [
-        "left out are natural ones from 8044 Hz on, whose part of the static compliance at a hold, up to 27 %, those answers have",
+        "the omitted modes, from 8044 Hz on, have up to 27 % of the static compliance at an attachment, which the correction modes contain",
         "1 unbalance at places along the body shaft",
-        "in proportion to mass, of bending; where it brakes all motion",
+        "mass-proportional, of bending; if of all motion",
     ] {
         assert!(said.contains(part), "{part}: {said}");
     }
@@ -34,7 +34,7 @@ fn plans_of_shafts_have_plain_words() {
             "damping = \"100 1/s\"\ndamped_motion = \"relative-to-rigid\"",
         )],
     );
-    assert!(said.contains("of bending alone, in proportion to mass"), "{said}");
+    assert!(said.contains("of bending alone, mass-proportional"), "{said}");
     assert!(!said.contains("dashpots to the ground under"), "{said}");
 }
 
@@ -63,7 +63,7 @@ fn steps_that_windows_cut_are_told() {
     assert!(!plain.contains("cut to the coupling step"), "{plain}");
     let given = plan("", "step = \"1 us\"");
     assert!(given.contains("numerics.step = 1e-6 s is cut to the coupling step"), "{given}");
-    let part = plan("step_fraction = 0.95\nwindow_phase = 0.01\n", "");
+    let part = plan("step_fraction = 0.95\ncoupling_phase = 0.01\n", "");
     assert!(part.contains("housing.step_fraction = 0.95 becomes 0."), "{part}");
 }
 

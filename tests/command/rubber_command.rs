@@ -263,8 +263,8 @@ fn what_does_not_fit_rubber_is_refused() {
         ("check", with("chain = 0"), &["solid.material.chain", "Allowed"]),
         (
             "check",
-            with("chain = 0.9\nchain_pull = \"inverse-langevin\""),
-            &["solid.material.chain", "Allowed: more than 1", "straight"],
+            with("chain = 0.9\nchain_force = \"inverse-langevin\""),
+            &["solid.material.chain", "Allowed: more than 1", "fully extended"],
         ),
         ("check", with("bulk_ratio = 100\nbulk_modulus = \"60 MPa\""), &["together with"]),
         (
@@ -370,7 +370,7 @@ fn what_does_not_fit_rubber_is_refused() {
             &["free to move along z"],
         ),
         ("modes", (law, law.into()), &["no natural modes", "[solid.harmonic]"]),
-        ("sweep", (law, law.into()), &["this takes a bearing, and the scene holds a solid"]),
+        ("sweep", (law, law.into()), &["this takes a bearing, and the scene has a solid"]),
     ];
     for (name, (from, to), needles) in cases {
         assert!(RUBBER.contains(from), "{from}");

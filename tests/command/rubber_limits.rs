@@ -72,7 +72,7 @@ fn sleeves_that_let_rubber_slide_are_told() {
     let said =
         |inner: &str| succeed(command("check", &place.scene("b.toml", &bushing(inner)), &[]));
     let slides = said("z = \"0.1 mm\"");
-    assert!(slides.contains("sleeve \"inner\" is held along z alone"), "{slides}");
+    assert!(slides.contains("sleeve \"inner\" is fixed along z alone"), "{slides}");
     assert!(!slides.contains("sleeve \"outer\""), "{slides}");
     let bonded = said("x = true\ny = true\nz = \"0.1 mm\"");
     assert!(!bonded.contains("sleeve"), "{bonded}");
@@ -161,7 +161,7 @@ fn sleeves_that_would_pass_through_each_other_are_refused() {
     for verb in ["check", "plan", "statics", "run"] {
         let (code, message) = verdict(verb, &by("8.01 mm"));
         assert_eq!(code, Some(2), "{verb}: {message}");
-        assert!(message.contains("solid.fixed.z: the inner sleeve goes 8.0100 mm"), "{message}");
+        assert!(message.contains("solid.fixed.z: the inner sleeve moves 8.0100 mm"), "{message}");
         assert!(message.contains("is 8.0000 mm thick"), "{message}");
     }
     assert_eq!(verdict("check", &by("7.9 mm")).0, Some(0));

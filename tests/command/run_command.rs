@@ -448,7 +448,7 @@ fn runs_of_different_accuracy_are_compared_with_given_tolerances() {
         let (found, _, message) = compare(&["--rtol", "1e-2", "--atol", &format!("{unit}=1e9")]);
         assert_eq!(found, 2, "{unit}");
         assert!(message.contains(&format!("the unit {unit:?}")), "{message}");
-        assert!(message.contains("there are: ") && message.contains(" m/s,"), "{message}");
+        assert!(message.contains("units are: ") && message.contains(" m/s,"), "{message}");
     }
 }
 

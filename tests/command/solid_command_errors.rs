@@ -118,12 +118,12 @@ const CLAMPED: &str = "[[solid.fixed]]\nset = \"x_low\"\nx = true\ny = true\nz =
 fn loads_that_supports_take_are_told() {
     let place = Place::new();
     let load = |set: &str| format!("[[solid.load]]\nset = \"{set}\"\nz = \"-100 N\"\n");
-    let parts = ["solid.load.set", "\"x_low\" is held along z", "Load another set"];
+    let parts = ["solid.load.set", "\"x_low\" is fixed along z", "Load another set"];
     refused(&place, &bar(1, &format!("{CLAMPED}{}", load("x_low"))), &parts);
     let pressure = "[[solid.load]]\nset = \"x_low\"\npressure = \"1 MPa\"\n";
     refused(&place, &bar(1, &format!("{CLAMPED}{pressure}")), &["held along x"]);
     let said = accepted(&place, &bar(1, &format!("{CLAMPED}{}", load("x_high"))));
-    assert!(!said.contains("the support takes it"), "{said}");
+    assert!(!said.contains("the support carries it"), "{said}");
     // The upper edge of an end of two cells has a quarter of it.
     let roof = "[[solid.fixed]]\nset = \"z_high\"\nz = true\n";
     let said = accepted(&place, &bar(1, &format!("{roof}{}", load("x_high"))));
@@ -143,7 +143,7 @@ fn probes_outside_the_body_or_with_endless_names_are_refused_at_once() {
         &["solid.probe.at", "360.0", "outside the body", "0.040000"],
     );
     let said = accepted(&place, &probe("near", "42 mm"));
-    assert!(said.contains("probe \"near\" is that of the nearest node"), "{said}");
+    assert!(said.contains("probe \"near\" is at the nearest node"), "{said}");
     assert!(!accepted(&place, &probe("exact", "40 mm")).contains("nearest node"));
     let long = "n".repeat(200);
     refused(&place, &probe(&long, "40 mm"), &["solid.probe.name", "200 letters", "120"]);
@@ -172,7 +172,7 @@ fn materials_of_decks_are_not_skipped_for_steel() {
     let said = accepted(&place, &scene(aluminium.0, aluminium.1, named));
     // Both numbers, and which one counts; what agrees is not held against it.
     assert!(said.contains("the scene's material is used, not the deck's"), "{said}");
-    assert!(said.contains("youngs_modulus 68 GPa counts, not 70 GPa; the deck has"), "{said}");
+    assert!(said.contains("youngs_modulus 68 GPa is used, not 70 GPa; the deck has"), "{said}");
     let said = accepted(&place, &scene("68000., 0.33", "2.7e-9", named));
     assert!(!said.contains("not the deck's"), "{said}");
     // Steel by default is steel.
@@ -200,7 +200,7 @@ fn several_volumes_of_one_material_are_told() {
     let text = "[solid.mesh]\nfile = \"two.msh\"\nunit = \"mm\"\n";
     fs::write(place.path("two.msh"), TWO_VOLUMES).unwrap();
     let said = accepted(&place, text);
-    assert!(said.contains("2 volumes (hub, rim)") && said.contains("one material"), "{said}");
+    assert!(said.contains("2 volumes (hub, rim)") && said.contains("one body"), "{said}");
     let one = TWO_VOLUMES.replace("\n2 4 2 2 2", "\n2 4 2 1 2");
     fs::write(place.path("two.msh"), one.replace("2\n3 1 \"hub\"\n3 2 \"rim\"", "1\n3 1 \"hub\""))
         .unwrap();

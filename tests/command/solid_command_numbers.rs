@@ -172,7 +172,7 @@ fn an_element_that_turns_inside_out() {
         let failed = into_folder("run", &path, &place.path("out"), &["--fresh"]).output().unwrap();
         assert_eq!(failed.status.code(), Some(2));
         let message = stderr(&failed);
-        assert!(message.contains("is turned inside out at t = "), "{message}");
+        assert!(message.contains("is inverted at t = "), "{message}");
         let element = after(&message, "element ");
         assert_at(place_after(&message, "element"), deck.centre(element), MICROMETRE);
     }
@@ -196,7 +196,7 @@ fn no_equilibrium_has_an_element_inside_out() {
     let refused = command("statics", &pushed("-30 mm"), &["--dry"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
     let message = stderr(&refused);
-    for part in ["no equilibrium found", "is turned inside out", "apply less load, or check"] {
+    for part in ["no equilibrium found", "is inverted", "apply less load, or check"] {
         assert!(message.contains(part), "{part} is not in {message}");
     }
     let element = after(&message, "element ");

@@ -101,7 +101,7 @@ fn whirl_on_an_uneven_spring_that_turns_is_not_told() {
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         let said = said(&output);
         assert_eq!(said.contains("whirl at 6000.0 rpm"), told, "{said}");
-        let why = "not computed: the spring mount turns with the body where it begins";
+        let why = "not computed: the spring mount rotates with the body at its first end";
         assert_eq!(said.contains(why), !told, "{said}");
     }
 }
@@ -115,7 +115,7 @@ fn springs_beyond_their_reach_end_a_run() {
     let wound = disc("from = \"ground\"\nto = \"disc\"", "{ y = \"1 N s/m\" }", "end = \"20 ms\"")
         .replace("turn_y = \"2000", "turn_x = \"1 N m/rad\", turn_y = \"2000");
     for (text, how) in [
-        (flying, "m, more than 1 m, up to which it is a spring"),
+        (flying, "m, more than 1 m, the limit of its law"),
         (wound, "the spring mount is turned by 16"),
     ] {
         let scene = place.scene("scene.toml", &text);

@@ -157,7 +157,8 @@ fn of_solids() {
     let pulled = |by: &str| block(&format!("[[solid.fixed]]\nset = \"x_high\"\nx = \"{by} mm\"\n"));
     // Incompressible rubber pulled to five times its length: chains of sqrt((25 + 2/5)/3)/sqrt(8) = 1.03; at three times 0.63.
     assert_raised("W12", "statics", &pulled("40"), &pulled("20"));
-    let exact = changed(&pulled("40"), "chain = 8", "chain = 8\nchain_pull = \"inverse-langevin\"");
+    let exact =
+        changed(&pulled("40"), "chain = 8", "chain = 8\nchain_force = \"inverse-langevin\"");
     let exact = changed(&exact, "40 mm", "22 mm");
     assert!(!codes("statics", &exact).contains(&"W12".to_string()));
 }

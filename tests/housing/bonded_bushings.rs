@@ -207,7 +207,7 @@ fn the_ledger_of_bearing_and_rubber_closes() {
 #[test]
 fn windows_follow_the_phase_of_the_bushing() {
     let coupling_step = |phase: &str| {
-        let own = format!("length = \"20 mm\"\nwindow_phase = {phase}\ntable");
+        let own = format!("length = \"20 mm\"\ncoupling_phase = {phase}\ntable");
         let made =
             Made::of(&changed("explicit", COARSE, ("length = \"20 mm\"\ntable", &own)), 2e-4);
         let Parts::Housed(parts) = made.parts() else { panic!("no bushing") };
@@ -223,7 +223,7 @@ fn windows_follow_the_phase_of_the_bushing() {
 /// CouplingSteps are for rubber that nothing has relaxed in: by the springs that it is like, with all of their Maxwell elements.
 #[test]
 fn windows_are_short_enough_for_rubber_that_has_not_relaxed() {
-    let own = "length = \"20 mm\"\nwindow_phase = 0.1\ntable";
+    let own = "length = \"20 mm\"\ncoupling_phase = 0.1\ntable";
     let made = Made::of(&changed("explicit", COARSE, ("length = \"20 mm\"\ntable", own)), 2e-4);
     let Parts::Housed(parts) = made.parts() else { panic!("no bushing") };
     let HousedParts { assembly, bushings, options, .. } = *parts;

@@ -240,7 +240,7 @@ fn what_a_smooth_bore_cannot_hold_is_an_error() {
     assert!(said.contains("tilted it by") && said.contains("deg about y"), "{said}");
     let said =
         BoreError::NotHeld { coordinate: "z", travel: -1.939e-2, force: 2.141e-3 }.to_string();
-    assert!(said.contains("moved it by -19.3900 mm along z from its nominal place"), "{said}");
+    assert!(said.contains("moved it by -19.3900 mm along z from its nominal position"), "{said}");
     assert!(said.contains("0.00214 N"), "{said}");
 }
 
@@ -257,7 +257,7 @@ fn a_housing_that_is_too_soft_is_called_so() {
     };
     assert_eq!((coordinate, load, youngs_modulus), ("z", 2000.0, 1e-6 * YOUNG));
     assert!(travel < -0.01 * BORE && radius == BORE + 1e-6, "{travel}");
-    assert!(said.contains("it holds all 2000 N of the load"), "{said}");
+    assert!(said.contains("it carries all 2000 N of the load"), "{said}");
     assert!(said.contains(&format!("moved it by {:.4} mm along z", 1e3 * travel)), "{said}");
     assert!(said.contains("youngs_modulus, which is 0.00021 GPa"), "{said}");
     assert!(!said.contains("no resistance"), "{said}");

@@ -106,7 +106,7 @@ fn what_ends_a_run_has_a_name() {
     let assembly = || on_two(shaft(), ContactDamping::None);
     let refused = CoupledMotion::new(assembly(), vec![solid], vec![seat], &options(0.8, 0.25));
     let Err(error) = refused else { panic!("a seat without nodes") };
-    assert!(error.to_string().starts_with("no node of the housing right carries"), "{error}");
+    assert!(error.to_string().starts_with("no node of the housing right is on a face"), "{error}");
     let mut fixed = assembly();
     fixed.bodies[2].mobility = Mobility::Fixed;
     let (solid, seat) = fitted(&right(true), 0, Mount::at_centre(2));

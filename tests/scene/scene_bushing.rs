@@ -96,7 +96,7 @@ fn what_cannot_be_is_told() {
                 "[spring.mount.bushing]",
                 "[spring.mount.stiffness]\nx = \"1 N/m\"\n[spring.mount.bushing]",
             )],
-            "says how stiff",
+            "whose stiffness follows",
         ),
         (
             [(
@@ -106,7 +106,7 @@ fn what_cannot_be_is_told() {
             "at most 1500",
         ),
         ([("table = \"3.1\"", "table = \"3.1\"\ncells = { radial = 3 }")], "even"),
-        ([("table = \"3.1\"", "table = \"3.1\"\nwindow_phase = 0.5")], "`method = \"explicit\"`"),
+        ([("table = \"3.1\"", "table = \"3.1\"\ncoupling_phase = 0.5")], "`method = \"explicit\"`"),
         (
             [("table = \"3.1\"", "table = \"3.1\"\nmethod = \"implicit\"\nstep_fraction = 0.5")],
             "the chosen method does not use it",

@@ -54,7 +54,7 @@ fn a_number_that_the_list_does_not_have_is_refused() {
         ("body.rotor.beam.segments.6.length", "has 5 tables. Allowed: 1 to 5"),
         ("body.rotor.beam.segments.0.length", "has 5 tables. Allowed: 1 to 5"),
         ("body.rotor.beam.disc.2.mass", "has one table. Allowed: 1."),
-        ("body.rotor.beam.segments.length", "such as body.rotor.beam.segments.1.length"),
+        ("body.rotor.beam.segments.length", "as in body.rotor.beam.segments.1.length"),
         ("bearing.fan.dent.1.angle", "has no tables"),
         ("body.rotor.2.beam.segments.length", "unknown key"),
         ("body.rotor.beam.2.damping", "unknown key"),

@@ -108,7 +108,7 @@ fn a_sensor_that_cannot_be_is_refused() {
             &["sensor.t.distance", "more than 0 mm"],
         ),
         (CAGED, &format!("{telemeter}\ncapacitance = \"100 uH\""), &["sensor.t.capacitance", "pF"]),
-        (STEPPED, &on("rotor"), &["sensor.a.on", "bends", "probe"]),
+        (STEPPED, &on("rotor"), &["sensor.a.on", "is flexible", "probe"]),
         (SOLID, &on("a"), &["sensor.a", "[[solid.probe]]"]),
     ] {
         let said = with(scene, sensors).expect_err(sensors);

@@ -85,9 +85,12 @@ fn faults_of_beams_say_what_is_wrong() {
     let beam = |lines: &str| format!("[body.shaft.beam]\n{lines}\n");
     let whole = "segments = [{ length = \"400 mm\", outer_diameter = \"30 mm\" }]\n";
     let cases = [
-        (beam("damping = \"1 1/s\""), "a shaft that bends has segments"),
-        (format!("inertia = {{ mass = \"1 kg\" }}\n{}", beam(whole)), "the body bends (`beam`)"),
-        (format!("unbalance = \"1e-3 kg m\"\n{}", beam(whole)), "the body bends (`beam`)"),
+        (beam("damping = \"1 1/s\""), "a flexible shaft has segments"),
+        (
+            format!("inertia = {{ mass = \"1 kg\" }}\n{}", beam(whole)),
+            "the body is flexible (`beam`)",
+        ),
+        (format!("unbalance = \"1e-3 kg m\"\n{}", beam(whole)), "the body is flexible (`beam`)"),
         (
             beam(
                 "segments = [{ length = \"400 mm\", outer_diameter = \"30 mm\", inner_diameter = \"30 mm\" }]",
@@ -98,7 +101,7 @@ fn faults_of_beams_say_what_is_wrong() {
             beam(&format!("{whole}load = [{{ at = \"201 mm\", z = \"1 N\" }}]")),
             "201.0000 mm is not on the shaft, which goes from -200.0000 to 200.0000 mm",
         ),
-        (beam(&format!("{whole}load = [{{ at = \"0 mm\" }}]")), "nothing acts"),
+        (beam(&format!("{whole}load = [{{ at = \"0 mm\" }}]")), "there is no force"),
         // Bounds of places and sizes are in metres, drawings are not.
         (
             beam("segments = [{ length = 400, outer_diameter = \"30 mm\" }]"),
@@ -159,22 +162,22 @@ fn faults_of_shafts_in_elements_say_what_is_wrong() {
     let turning = |lines: &str| beam("speed = \"1000 rpm\"", lines);
     let in_elements = |lines: &str| turning(&format!("{ELEMENTS}\n{lines}"));
     let cases = [
-        (beam("", ELEMENTS), "turn at a given speed"),
+        (beam("", ELEMENTS), "have a prescribed speed"),
         (beam("torque = \"1 N m\"", ELEMENTS), "body.shaft.torque: refused"),
         (
             beam("speed = \"1000 rpm\"\nz = { load = \"-100 N\" }", ELEMENTS),
-            "which loads meet at sections",
+            "whose loads act at sections",
         ),
         (in_elements("modes_to = \"3 kHz\""), "all of their frequencies"),
         (in_elements("internal_damping = \"1 1/s\""), "body.shaft.beam.internal_damping: refused"),
         (
             in_elements("damping = \"10 1/s\"\ndamped_motion = \"relative-to-rigid\""),
-            "in axes that stand still alone",
+            "only in axes that do not rotate",
         ),
         (in_elements("disc = [{ at = \"0 mm\", mass = \"1 kg\" }]"), "give its `axial`, above 0"),
         (
             turning("mesh = { order = 1, race_stiffness = \"1e9 N/m\" }"),
-            "sit on the sections themselves",
+            "are joined directly to the sections",
         ),
         (turning("mesh = { order = 1, method = \"implicit\" }"), "reduced"),
         (
@@ -182,14 +185,14 @@ fn faults_of_shafts_in_elements_say_what_is_wrong() {
                 "{}\n[spring.bed]\nfrom = \"ground\"\nto = \"shaft\"\nstiffness.y = \"1e6 N/m\"\n",
                 turning(ELEMENTS)
             ),
-            "bearings alone take hold of",
+            "to which only bearings can be joined",
         ),
         (
             format!(
                 "{}\n[bearing.back]\ninner_on = \"inner_race\"\nouter_on = \"shaft\"\ninner_at = \"0 mm\"\nouter_at = \"0 mm\"\n",
                 turning(ELEMENTS)
             ),
-            "an outer race does not sit on elements",
+            "an outer race cannot be on elements",
         ),
     ];
     for (text, expected) in cases {
@@ -321,7 +324,9 @@ unbalance = [{{ at = "100 mm", size = "{size}" }}]
     let disc = r#"disc = [{ at = "100 mm", outer_diameter = "200 mm", inner_diameter = "25 mm", width = "20 mm" }]"#;
     let error = read(&shaft(torque, "2e-2 kg m", "")).unwrap_err();
     assert!(
-        error.contains("body.shaft.beam: its unbalances, which a torque turns, are masses of"),
+        error.contains(
+            "body.shaft.beam: its unbalances, with a body driven by a torque, are masses of"
+        ),
         "{error}"
     );
     assert!(error.contains("give the disc that carries them"), "{error}");
