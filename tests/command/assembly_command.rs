@@ -269,7 +269,7 @@ fn bad_assemblies_are_refused() {
         (
             "a spring to nowhere",
             format!("{whole}\n[spring.s]\nfrom = \"axle\"\nstiffness = {{ x = \"1 N/m\" }}\n"),
-            vec!["spring.s.from", "\"axle\" is no end of a spring", "it may at: shaft, ground"],
+            vec!["spring.s.from", "\"axle\" is no end of a spring", "ends are: shaft, ground"],
         ),
         (
             "a spring to itself",

@@ -267,7 +267,7 @@ fn a_plan_foretells_the_windows_of_a_run() {
         };
         let (work, step) = (&summary["work"], &summary["step"]);
         assert_eq!(work["windows"], windows, "{plan}");
-        assert_eq!(step["housing_steps_a_window"], each, "{plan}");
+        assert_eq!(step["housing_steps_per_coupling_step"], each, "{plan}");
         assert_eq!(work["housing_steps"], windows * each, "{plan}");
         let window = value(&step["coupling_step"]);
         assert!(after.starts_with(&format!("{window:.3e} s")), "{window} s: {plan}");

@@ -290,7 +290,7 @@ fn what_does_not_fit_rubber_is_refused() {
                 "set = \"outer\"\nx = true\ny = true\nz = true",
                 format!("set = \"outer\"\nx = true\n{HARMONIC}"),
             ),
-            &["solid.harmonic.axis", "no set but \"inner\" is held along z"],
+            &["solid.harmonic.axis", "no set but \"inner\" is fixed along z"],
         ),
         ("check", behind("[[solid.material.maxwell]]\ngamma = 1"), &["relaxation_time", "missing"]),
         (

@@ -121,7 +121,7 @@ fn loads_that_supports_take_are_told() {
     let parts = ["solid.load.set", "\"x_low\" is fixed along z", "Load another set"];
     refused(&place, &bar(1, &format!("{CLAMPED}{}", load("x_low"))), &parts);
     let pressure = "[[solid.load]]\nset = \"x_low\"\npressure = \"1 MPa\"\n";
-    refused(&place, &bar(1, &format!("{CLAMPED}{pressure}")), &["held along x"]);
+    refused(&place, &bar(1, &format!("{CLAMPED}{pressure}")), &["fixed along x"]);
     let said = accepted(&place, &bar(1, &format!("{CLAMPED}{}", load("x_high"))));
     assert!(!said.contains("the support carries it"), "{said}");
     // The upper edge of an end of two cells has a quarter of it.

@@ -114,7 +114,7 @@ fn what_cannot_be_is_told() {
         ([("to = \"outer_race\"", "to = \"outer_rac\"")], "did you mean outer_race?"),
         (
             [("to = \"outer_race\"", "to = \"right.outer_race\"")],
-            "it may at: inner_race, outer_race, ground",
+            "ends are: inner_race, outer_race, ground",
         ),
         (
             [("motion = \"5-dof\"\nspeed = \"0 rpm\"", "motion = \"fixed\"")],

@@ -86,7 +86,7 @@ fn a_sensor_that_cannot_be_is_refused() {
         (CAGED, "[sensor.a]\non = \"cage\"", &["sensor.a.kind", "missing"]),
         (CAGED, "[sensor.a]\nkind = \"accelerometer\"", &["sensor.a.on", "missing"]),
         (CAGED, &on("outer_rase"), &["inner_race, outer_race, cage", "did you mean outer_race?"]),
-        (&fixed, &on("outer_race"), &["it may on: inner_race, cage"]),
+        (&fixed, &on("outer_race"), &["mounts are: inner_race, cage"]),
         (
             CAGED,
             &format!("{}\noffset = \"1 mm\"", on("cage")),

@@ -99,7 +99,7 @@ fn faults_of_beams_say_what_is_wrong() {
         ),
         (
             beam(&format!("{whole}load = [{{ at = \"201 mm\", z = \"1 N\" }}]")),
-            "201.0000 mm is not on the shaft, which goes from -200.0000 to 200.0000 mm",
+            "201.0000 mm is not on the shaft, which extends from -200.0000 to 200.0000 mm",
         ),
         (beam(&format!("{whole}load = [{{ at = \"0 mm\" }}]")), "there is no force"),
         // Bounds of places and sizes are in metres, drawings are not.

@@ -243,7 +243,7 @@ fn of_equilibrium(still: &StaticAssembly, housings: &[Housing], centrifugal: &st
 
 pub fn of_sequence(lists: &Lists, housings: &[Housing], run: &RunSettings) -> Fallible<Vec<Item>> {
     const CAGE_ROTATES: &str =
-        "in `run`, because the cage rotates; `statics` leaves it out, it is not requested";
+        "in `run`, because the cage rotates; `statics` omits it, it is not requested";
     let mut still = still(lists)?;
     for (bearing, placed) in still.bearings.iter_mut().zip(&lists.scene.bearings) {
         let turning = &placed.scene.dynamics.inner.rotation;

@@ -169,12 +169,12 @@ pub(super) fn step(housed: &CoupledMotion) -> Part {
         let (of, solid) = (prefix(&part.name), &part.solid);
         let kind = part.kind();
         section.insert(format!("{of}{kind}"), quantity("step", solid.step_size, "s")?);
-        section.insert(format!("{of}{kind}_steps_a_window"), json!(part.steps));
+        section.insert(format!("{of}{kind}_steps_per_coupling_step"), json!(part.steps));
     }
     for bushing in &housed.bushings {
         let name = &bushing.name;
         section.insert(format!("{name}_bushing"), quantity("step", bushing.step, "s")?);
-        section.insert(format!("{name}_bushing_steps_a_window"), json!(bushing.steps));
+        section.insert(format!("{name}_bushing_steps_per_coupling_step"), json!(bushing.steps));
     }
     let most = bodies.step_size.min(housed.coupling_step);
     section.insert("bearing_at_most".into(), quantity("step", most, "s")?);
@@ -206,7 +206,7 @@ pub(super) fn work(housed: &CoupledMotion) -> Value {
         let of = prefix(&seat.seat.name);
         let (tested, outside_range) = seat.counts();
         section.insert(format!("{of}bore_nodes_in_reach"), json!(tested));
-        section.insert(format!("{of}bore_nodes_out_of_reach"), json!(outside_range));
+        section.insert(format!("{of}bore_nodes_outside_contact_range"), json!(outside_range));
         section.insert(format!("{of}bore_node_tests"), json!(seat.tested));
         section.insert(format!("{of}sorts_by_reach"), json!(seat.sorts));
     }
