@@ -15,7 +15,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use tempfile::tempdir;
 
-pub const POINTS: usize = 10_000;
+pub const POINTS: usize = 4_000;
 
 /// A bearing that takes its time, about a second for all points on one thread: thirteen balls with
 /// forces on them, in a tilted outer race.
