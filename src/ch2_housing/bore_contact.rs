@@ -218,20 +218,20 @@ pub fn contact(
     sum
 }
 
-/// Splits nodes into those within the margin `reach` (m) of touching and those beyond. A far node needs no test as long
-/// as its displacement, the cylinder's displacement there and the growth of the radius sum to less than `reach`.
+/// Splits nodes into those within `margin` (m) of touching and those beyond. A far node needs no test as long
+/// as its displacement, the cylinder's displacement there and the growth of the radius sum to less than `margin`.
 pub fn split_by_distance(
     cylinder: &Cylinder,
     frame: &Frame,
     nodes: &[ContactNode],
     displacement: impl Fn(u32) -> Vec3,
-    reach: f64,
+    margin: f64,
 ) -> (Vec<ContactNode>, Vec<ContactNode>) {
     nodes.iter().partition(|node| {
         let [x, y, z] = frame.seen(add(node.place, displacement(node.node)));
-        let (gap, beside) =
+        let (gap, beyond_rim) =
             ((y * y + z * z).sqrt() - cylinder.radius, x.abs() - 0.5 * cylinder.width);
         // Not `>=`: a NaN position stays among the tested nodes.
-        !(gap > reach || beside > reach)
+        !(gap > margin || beyond_rim > margin)
     })
 }

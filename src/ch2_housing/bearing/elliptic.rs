@@ -1,10 +1,10 @@
 //! Complete elliptic integrals in the combinations that the Hertz problem needs.
 //!
-//! All are computed from Carlson's symmetric integrals R_F and R_D (Carlson, Numerical Algorithms 10, 1995, 13–26). The
+//! They are computed from Carlson's symmetric integrals R_F and R_D (Carlson, Numerical Algorithms 10, 1995, 13–26). The
 //! textbook form K(m) − E(m) loses all digits for nearly circular contacts; `R_D` gives the same difference without a
 //! subtraction.
 //!
-//! All functions take the *complementary* parameter m₁ = 1 − m = (b/a)² of an ellipse with semi-axes a ≥ b, 0 < m₁ ≤ 1,
+//! The functions take the *complementary* parameter m₁ = 1 − m = (b/a)² of an ellipse with semi-axes a ≥ b, 0 < m₁ ≤ 1,
 //! which keeps full precision for slender ellipses.
 
 /// R_F(0, y, z) for y, z > 0.

@@ -5,7 +5,7 @@
 //! q(y) = (3W/4a)(1 − y²/a²); its friction follows from a law of [`traction`](super::traction). As an extension,
 //! several points across a slice also resolve the slip that spin adds along the minor axis.
 //!
-//! All functions are scalar and branch-free, so that they vectorise.
+//! The functions are scalar and branch-free, so that they vectorise.
 
 use core::f64::consts::PI;
 
@@ -102,11 +102,11 @@ pub fn sliding(
     axis: Vec3,
     outward: Vec3,
     normal: Vec3,
-    reach: f64,
+    arm_length: f64,
 ) -> Sliding {
     let rolling_direction = cross(axis, outward);
     let transverse_direction = cross(normal, rolling_direction);
-    let arm_on_ball = scale(normal, reach);
+    let arm_on_ball = scale(normal, arm_length);
     let between = sub(ball.position, race.position);
     let arm_on_race = add(between, arm_on_ball);
     let ball_surface = add(ball.velocity, cross(ball.spin, arm_on_ball));
@@ -114,10 +114,10 @@ pub fn sliding(
     let slip = sub(ball_surface, race_surface);
     let relative = sub(ball.spin, race.spin);
     // The contact moves around the race with the ball.
-    let travel = dot(sub(ball.velocity, race.velocity), rolling_direction)
+    let contact_velocity = dot(sub(ball.velocity, race.velocity), rolling_direction)
         * (dot(arm_on_race, outward) / dot(between, outward))
         + dot(race.velocity, rolling_direction);
-    let through = dot(add(ball_surface, race_surface), rolling_direction) - 2.0 * travel;
+    let through = dot(add(ball_surface, race_surface), rolling_direction) - 2.0 * contact_velocity;
     Sliding {
         rolling_direction,
         transverse_direction,

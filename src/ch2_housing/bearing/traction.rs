@@ -1,7 +1,7 @@
 //! Friction laws between ball and race (2.2.1): coefficient as a function of sliding, and its force on a slice of the
 //! contact ([`slices`](super::slices)).
 //!
-//! All functions are scalar and branch-free: the scalar path and the vectorised path over contacts give the same bits.
+//! The functions are scalar and branch-free: the scalar path and the vectorised path over contacts give the same bits.
 
 /// Friction coefficient as a function of sliding.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,9 +130,9 @@ pub fn steepness(square: f64, share: f64, friction: impl Fn(f64) -> (f64, f64)) 
     let (coefficient, rise) = friction(speed);
     let rise = if rise > 0.0 { rise } else { 0.0 };
     // The secant κ/u tends to the tangent; 1e-12 m/s is far below any creep.
-    let crept = speed > 1e-12;
-    let per = 1.0 / if crept { speed } else { 1e-12 };
-    let secant = share * if crept { coefficient * per } else { rise };
+    let is_sliding = speed > 1e-12;
+    let per = 1.0 / if is_sliding { speed } else { 1e-12 };
+    let secant = share * if is_sliding { coefficient * per } else { rise };
     [secant, (share * rise - secant) * per * per]
 }
 

@@ -14,9 +14,9 @@ pub fn langevin(beta: f64) -> [f64; 2] {
     }
     let per = 1.0 / beta;
     // 1/sinh² as 4 e⁻²ᵝ/(1 − e⁻²ᵝ)², which does not overflow.
-    let fade = libm::exp(-2.0 * beta);
+    let decay = libm::exp(-2.0 * beta);
     let rest = -libm::expm1(-2.0 * beta);
-    [(1.0 + fade) / rest - per, per * per - 4.0 * fade / (rest * rest)]
+    [(1.0 + decay) / rest - per, per * per - 4.0 * decay / (rest * rest)]
 }
 
 /// β = L⁻¹(x) and dβ/dx for 0 < x < 1, by Newton's method from Cohen's approximation (1991).

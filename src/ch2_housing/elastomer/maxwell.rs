@@ -2,7 +2,7 @@
 //! dashpot of relaxation time τ.
 //!
 //! The recursion is exact if DEV S changes linearly within the step, and of second order otherwise. Only [`commit`]
-//! changes a history, once per accepted step; iterations for the next state need only [`carried`].
+//! changes a history, once per accepted step; iterations for the next state need only [`relaxed_history`].
 
 use super::ElastomerError;
 use crate::kinematics::number::Number;

@@ -15,7 +15,7 @@ const LEAF: usize = 60;
 /// Fraction of the nodes on each side of the middle in which separators are searched.
 const BAND: f64 = 0.12;
 /// Axes are tried if their plain cut through the middle exceeds the smallest one by at most this factor.
-const WORTH_A_TRY: f64 = 1.25;
+const MAX_CUT_RATIO: f64 = 1.25;
 
 /// Nodes in elimination order.
 pub fn nested_dissection(graph: &Graph, places: &[Vec3]) -> Vec<u32> {
@@ -76,7 +76,7 @@ impl Dissection<'_> {
             })
             .collect();
         tries.sort_by_key(|(size, _)| *size);
-        let limit = WORTH_A_TRY * tries[0].0 as f64;
+        let limit = MAX_CUT_RATIO * tries[0].0 as f64;
         for (_, sorted) in tries.iter().filter(|(size, _)| *size as f64 <= limit) {
             for cut in self.cuts_about(sorted) {
                 let (low, high) = (cut.low.len() as f64, cut.high.len() as f64);

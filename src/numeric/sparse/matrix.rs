@@ -56,7 +56,7 @@ impl SymmetricMatrix {
     pub fn add(&mut self, Entry { row, column }: Entry, value: f64) {
         let start = self.pattern.starts[column];
         let of_column = &self.pattern.rows[start..self.pattern.starts[column + 1]];
-        let at = of_column.binary_search(&(row as u32)).expect("a place of the pattern");
+        let at = of_column.binary_search(&(row as u32)).expect("the entry is in the pattern");
         self.values[start + at] += value;
     }
 

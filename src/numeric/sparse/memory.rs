@@ -86,19 +86,19 @@ impl Memory {
         self.factor_bytes + self.other_bytes
     }
 
-    /// Checks that the solution fits into memory: the process already uses `held` bytes and may use `limit` bytes in
+    /// Checks that the solution fits into memory: the process already uses `used` bytes and may use `limit` bytes in
     /// total.
     ///
     /// # Errors
     /// [`TooLarge`] if it does not fit.
     pub fn refuse_beyond(
         &self,
-        held: f64,
+        used: f64,
         limit: f64,
         limit_from: &str,
         other: &'static str,
     ) -> Result<(), TooLarge> {
-        let bytes = held + self.bytes();
+        let bytes = used + self.bytes();
         if bytes <= limit {
             return Ok(());
         }
