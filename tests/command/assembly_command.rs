@@ -281,7 +281,7 @@ fn bad_assemblies_are_refused() {
         (
             "two bearings in one place",
             whole.replace("inner_at = \"-40 mm\"", "inner_at = \"39 mm\""),
-            vec!["bearing.right", "in those of bearing left", "1.0000 mm apart"],
+            vec!["bearing.right", "inside those of bearing left", "1.0000 mm apart"],
         ),
         (
             "both races on one body",

@@ -129,7 +129,7 @@ fn fits_and_seats_are_not_taken_in_silence() {
     let loose = noted("fit.radial = \"-1 um\"");
     assert!(!loose.contains("rigid"), "{loose}");
     let wide = noted("fit.radial = \"-1 um\"\nwidth = \"30 mm\"");
-    assert!(wide.contains("of the outer race's width of 30.0000 mm are beside the bore"), "{wide}");
+    assert!(wide.contains("width of 30.0000 mm, 10.0000 mm are beside the bore"), "{wide}");
     let scene = place.scene("tight.toml", &scene_text("fit.radial = \"5 um\"", ""));
     let out = place.path("tight");
     let said = succeed(into_folder("statics", &scene, &out, &[]));

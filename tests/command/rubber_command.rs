@@ -340,7 +340,7 @@ fn what_does_not_fit_rubber_is_refused() {
         (
             "check",
             behind("[solid.harmonic]\nset = \"ends\"\naxis = \"z\"\nfrequencies = [\"1 Hz\"]"),
-            &["solid.harmonic.set", "\"ends\" is not held along z", "inner"],
+            &["solid.harmonic.set", "\"ends\" is not fixed along z", "inner"],
         ),
         (
             "check",
@@ -350,12 +350,12 @@ fn what_does_not_fit_rubber_is_refused() {
         (
             "check",
             ("set = \"x_low\"\nx = true", "set = \"x_low\"\ny = true".into()),
-            &["solid.mesh.part", "\"x_low\" is not held along x", "whole"],
+            &["solid.mesh.part", "\"x_low\" is not fixed along x", "whole"],
         ),
         (
             "check",
             ("set = \"y_low\"\ny = true", "set = \"y_low\"\nx = true".into()),
-            &["solid.mesh.part", "\"y_low\" is not held along y"],
+            &["solid.mesh.part", "\"y_low\" is not fixed along y"],
         ),
         (
             "check",

@@ -133,7 +133,7 @@ fn what_cannot_be_is_told() {
         ),
         ("[outer_race]\nmotion = \"5-dof\"\nspeed = \"0 rpm\"\n", ""),
     ]);
-    assert!(sits.contains("sits on body.sleeve") && sits.contains("\"sleeve\""), "{sits}");
+    assert!(sits.contains("is on body.sleeve") && sits.contains("\"sleeve\""), "{sits}");
 }
 
 /// Of several bearings by their names, at the places where their races sit; a spring begins there too.

@@ -174,7 +174,7 @@ fn overhang(width: f64, [low, high]: [f64; 2]) -> Option<String> {
     // A thousandth of the width is rounding of meshes and drawings.
     (beside > 1e-3 * width).then(|| {
         format!(
-             "{:.4} mm of the outer race's width of {:.4} mm are beside the bore, which extends from {:.4} to {:.4} \
+             "of the outer race's width of {:.4} mm, {:.4} mm are beside the bore, which extends from {:.4} to {:.4} \
              mm along the axis from the race's centre: they bear on nothing, and pressure is high at the \
              bore's edge. If that is not meant, check housing.width and outer_race.x",
             1e3 * width,
