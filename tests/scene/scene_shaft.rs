@@ -129,7 +129,7 @@ fn faults_of_beams_say_what_is_wrong() {
                 "{}[spring.stay]\nfrom = \"ground\"\nto = \"shaft\"\nto_at = \"-200.1 mm\"\nstiffness = {{ z = \"1e6 N/m\" }}\n",
                 beam(whole)
             ),
-            "spring.stay.to_at: refused: -200.1000 mm is not on body shaft, which goes from -200.0000 to 200.0000 mm",
+            "spring.stay.to_at: refused: -200.1000 mm is not on body shaft, which extends from -200.0000 to 200.0000 mm",
         ),
         // Which one of a list, counted from 1.
         (
