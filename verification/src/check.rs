@@ -134,34 +134,34 @@ impl Check {
         }
     }
 
-    /// AttachedStation it against an entry of the case's `published.toml`.
+    /// Compares it with an entry of the case's `published.toml`.
     pub fn published(mut self, id: &str) -> Check {
         self.reference = Some(Reference::Published(id.to_string()));
         self
     }
 
-    /// AttachedStation it against a formula; `origin` says which.
+    /// Compares it with a formula; `origin` says which.
     pub fn closed_form(self, value: f64, origin: &str) -> Check {
         self.computed(ReferenceKind::ClosedForm, value, origin)
     }
 
-    /// AttachedStation it against a converged solution; `origin` says of what.
+    /// Compares it with a converged solution; `origin` says of what.
     pub fn converged(self, value: f64, origin: &str) -> Check {
         self.computed(ReferenceKind::Converged, value, origin)
     }
 
-    /// AttachedStation it against another method or code that shares none of ours; `origin` says which.
+    /// Compares it with another method or code that shares none of ours; `origin` says which.
     pub fn independent(self, value: f64, origin: &str) -> Check {
         self.computed(ReferenceKind::Independent, value, origin)
     }
 
-    /// AttachedStation it against another of our own ways; `ways` says which two: "explicit run, settled, against our
+    /// Compares it with another of our own ways; `ways` says which two: "explicit run, settled, against our
     /// own equilibrium".
     pub fn consistency(self, value: f64, ways: &str) -> Check {
         self.computed(ReferenceKind::Consistency, value, ways)
     }
 
-    /// AttachedStation it against what a sentence of the source says without a number: a threshold or an order.
+    /// Compares it with what a sentence of the source says without a number: a threshold or an order.
     /// `section` is where it stands, `sentence` what it says in our own words: "thinner is stiffer".
     pub fn stated(self, value: f64, section: &str, sentence: &str) -> Check {
         let blank = section.trim().is_empty() || sentence.trim().is_empty();
