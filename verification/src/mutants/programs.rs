@@ -127,10 +127,14 @@ impl Programs {
     }
 }
 
-/// The program of a cargo message, if it is of this kind and name.
+/// The program of a cargo message, if it is of this kind and name. Checks are tests of the library, and the package of the
+/// verification may have one of the same name.
 fn executable(message: &serde_json::Value, kind: &str, name: &str) -> Option<PathBuf> {
     let target = &message["target"];
-    let wanted = target["name"] == name && target["kind"].as_array()?.iter().any(|k| k == kind);
+    let of_verification = message["manifest_path"].as_str()?.ends_with("verification/Cargo.toml");
+    let wanted = target["name"] == name
+        && target["kind"].as_array()?.iter().any(|k| k == kind)
+        && of_verification == (kind == "bin");
     let path = message["executable"].as_str()?;
     wanted.then(|| path.into())
 }
