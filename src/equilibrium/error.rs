@@ -8,16 +8,17 @@ pub enum StaticsError {
     #[error("{what} is {value}: every input of the static problem must be finite")]
     NotFinite { what: &'static str, value: f64 },
     #[error(
-        "no equilibrium: {body} leaves its place along {coordinate} \
-         ({travel:.3e} m, farther than the {room:.3e} m it has); nothing holds it \
-         against the load in this direction, or not against so much of it: hold the coordinate by a displacement or a spring{start}, turn the load or take less of it, \
-         or start a motion in nominal positions (numerics.start = \"nominal\")",
+        "no equilibrium: {body} moves {travel:.3e} m along {coordinate}, farther than the {room:.3e} m \
+         available. Nothing holds it in this direction, or the load is too large for what holds it. Hint: \
+         prescribe a displacement or add a spring there{start}; change the direction of the load or reduce \
+         it; or start a run in nominal positions (numerics.start = \"nominal\")",
         start = unsupported(coordinate)
     )]
     NoEquilibrium { body: String, coordinate: &'static str, travel: f64, room: f64 },
     #[error(
-        "internal damping of {body} (internal_damping) drags it at this speed as hard as it springs back: the iteration over its force does not \
-         settle; take less of it, a lower speed at the start, or start in nominal positions (numerics.start = \"nominal\")"
+        "at this speed the force of internal damping of {body} (internal_damping) is as large as its elastic \
+         force, so that the iteration does not converge. Hint: reduce the damping or the speed at the start, \
+         or start in nominal positions (numerics.start = \"nominal\")"
     )]
     Dragged { body: String },
     #[error(

@@ -248,8 +248,9 @@ pub enum FreeShaftError {
     #[error(transparent)]
     Shapes(#[from] ShapesError),
     #[error(
-        "its unbalances, with a body driven by a torque, are masses of at least {least} kg m^2 about the axis, and the shaft has {axial} in all. \
-         Hint: check their units, or give the disc that carries them ([[body.NAME.beam.disc]])"
+        "the unbalances of a shaft driven by a torque have a moment of inertia of at least {least} kg m^2 \
+         about its axis, but the whole shaft has only {axial} kg m^2. Hint: check their units, or give the \
+         disc that carries them ([[body.NAME.beam.disc]])"
     )]
     Unbalances { least: f64, axial: f64 },
 }

@@ -106,9 +106,10 @@ pub enum CouplingError {
     )]
     LeftBore { race: String, way: &'static str, distance: f64, allowed: f64, time: f64, step: u64 },
     #[error(
-        "{race} and its bore have moved by {moved:.3e} m at t = {time} s since nodes farther than {reach:.3e} m from contact \
-         were left out, within {CHECK_EVERY} coupling_steps: far more than what is in equilibrium there moves. Hint: does the race start in the wall of \
-         its bore (fit, solid.mesh.origin)? Is a load, or its unit, far too large?"
+        "{race} and its bore have moved by {moved:.3e} m relative to each other within {CHECK_EVERY} coupling \
+         steps, at t = {time} s. The search for contact omits nodes farther than {reach:.3e} m from contact \
+         until these steps are over, and a race near equilibrium moves far less. Hint: does the race start in \
+         the wall of its bore (fit, solid.mesh.origin)? Is a load, or its unit, far too large?"
     )]
     Outrun { race: String, moved: f64, reach: f64, time: f64 },
 }

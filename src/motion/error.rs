@@ -30,8 +30,8 @@ pub enum SimulationError {
     )]
     FractionOfOther(&'static str),
     #[error(
-        "no step is short enough at t = {at} s, step {step}: the error of one of {size:.3e} s is \
-         still {error:.3e} of what the accuracy allows",
+        "no step is short enough at t = {at} s, step {step}: even with a step of {size:.3e} s the error is \
+         {error:.3e} times the allowed error",
         at = display_time(*time)
     )]
     StepVanished { time: f64, step: u64, size: f64, error: f64 },
@@ -41,9 +41,10 @@ pub enum SimulationError {
     )]
     NoStep,
     #[error(
-        "the step of {size:.3e} s is longer than the largest stable one, {limit:.3e} s at t = {at} s, \
-          step {step} ({reason}): oscillations would grow, or sliding alternate; take a \
-         shorter step (numerics.step), or leave it out for one that follows from the limit",
+        "the step of {size:.3e} s is longer than the largest stable step, {limit:.3e} s, at t = {at} s, step \
+         {step} ({reason}): oscillations would grow, or the direction of sliding would alternate from step to \
+         step. Hint: write a shorter numerics.step, or omit it; the program then computes the step from the \
+         stability limit",
         at = display_time(*time)
     )]
     StepTooLong { size: f64, limit: f64, reason: String, time: f64, step: u64 },
@@ -59,9 +60,10 @@ pub enum SimulationError {
     )]
     BallOutside { ball: String, time: f64, step: u64, distance: f64, ball_radius: f64 },
     #[error(
-        "the inner race has left {bearing} at t = {at} s, step {step}: it is {distance:.3e} m off {way}, \
-         farther than the {allowed:.3e} m of a ball's radius and all play of the grooves; nothing holds \
-         it against its loads or given motion (balls gathered on one side, an axial load that opens the bearing?)",
+        "the inner race has left {bearing} at t = {at} s, step {step}: it is displaced by {distance:.3e} m \
+         {way}, more than the {allowed:.3e} m of a ball's radius plus the total clearance; nothing holds it \
+         against its loads or prescribed motion (balls gathered on one side, an axial load that opens the \
+         bearing?)",
         at = display_time(*time)
     )]
     RaceLeft {
@@ -73,8 +75,8 @@ pub enum SimulationError {
         step: u64,
     },
     #[error(
-        "{one} is {depth:.3e} m inside {other} at t = {at} s, step {step}, deeper than the {allowed:.3e} m \
-         of a tenth of a ball's radius, where no contact law holds any more; {advice}",
+        "{one} is {depth:.3e} m inside {other} at t = {at} s, step {step}, deeper than a tenth of a ball's \
+         radius ({allowed:.3e} m), the limit of the contact law; {advice}",
         at = display_time(*time)
     )]
     Inside {
@@ -87,16 +89,17 @@ pub enum SimulationError {
         advice: String,
     },
     #[error(
-        "{cage} has no place at the start: it would lie {depth:.3e} m inside {other}, deeper than the {allowed:.3e} m of \
-         the races' contacts; check which way the loads push, bearing.cage.pocket_radius and race_clearance, or start in \
-         nominal positions (numerics.start = \"nominal\")"
+        "{cage} does not fit at the start: it would penetrate {other} by {depth:.3e} m, more than the \
+         {allowed:.3e} m of the contacts of the races. Hint: check the direction of the loads, \
+         bearing.cage.pocket_radius and race_clearance, or start in nominal positions (numerics.start = \
+         \"nominal\")"
     )]
     CageInTheWay { cage: String, other: String, depth: f64, allowed: f64 },
     #[error(
-        "{body} has left its bearing at t = {at} s, step {step}: its centre is {distance:.3e} m off the \
-         axis of the outer race, farther than the {allowed:.3e} m that its ring has there; round \
-         pockets hold a cage along its axis and around it, not across: let a race guide it \
-         (bearing.cage.guidance) or take spherical pockets (bearing.cage.pocket)",
+        "{body} has left its bearing at t = {at} s, step {step}: its centre is {distance:.3e} m off the axis \
+         of the outer race, more than the {allowed:.3e} m available to its ring. Cylindrical pockets hold a \
+         cage axially and circumferentially, not radially. Hint: guide it by a race (bearing.cage.guidance) \
+         or use spherical pockets (bearing.cage.pocket)",
         at = display_time(*time)
     )]
     CageLeft { body: String, distance: f64, allowed: f64, time: f64, step: u64 },
@@ -115,8 +118,9 @@ pub enum SimulationError {
         step: u64,
     },
     #[error(
-         "{spring} is {how}, the limit of its law, at t = {at} s, step {step}: are the joined bodies displaced (growing whirl? \
-          loads and their units? a load that changes from the start on?), or does the spring oppose a rotation (turn_x)?",
+         "{spring} is {how}, the limit of its law, at t = {at} s, step {step}. Hint: check whether the \
+          connected bodies move too far (unstable whirl, wrong load or unit, a load that changes from the \
+          start of the run), or whether the spring resists the rotation of the shaft (turn_x)",
         at = display_time(*time)
     )]
     SpringBeyond { spring: String, how: String, time: f64, step: u64 },

@@ -46,11 +46,11 @@ pub enum HousingSetupError {
     )]
     NotRound { bore: String, nearest: f64, farthest: f64, lies: Lies },
     #[error(
-        "housing.bore: the edges of \"{bore}\" are straight: its mid-side nodes, where the race touches, are \
-         up to {:.3} um inside the cylinder of radius {:.4} mm through its corners; the arcs of these edges are \
-         {:.3} um high, of which {:.0} % is missing. Hint: mesh it with curved edges (in Gmsh \
-         Mesh.SecondOrderLinear = 0, and Mesh.HighOrderOptimize = 0 if that straightened them), or save \
-         it with first-order elements and write order = 2 in [solid.mesh]",
+        "housing.bore: the element edges of \"{bore}\" are straight: its mid-side nodes, which the race \
+         touches, are up to {:.3} um inside the cylinder of radius {:.4} mm through the corner nodes. Curved \
+         edges would have an arc height of {:.3} um, and {:.0} % of it is missing. Hint: mesh it with curved \
+         edges (in Gmsh Mesh.SecondOrderLinear = 0, and Mesh.HighOrderOptimize = 0 if that straightened \
+         them), or save it with first-order elements and write order = 2 in [solid.mesh]",
         1e6 * *.inside, 1e3 * *.radius, 1e6 * *.sagitta, 1e2 * *.missing
     )]
     StraightBore { bore: String, radius: f64, inside: f64, sagitta: f64, missing: f64 },

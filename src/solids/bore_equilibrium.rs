@@ -63,26 +63,27 @@ pub enum BoreError {
     )]
     AxialMoment { moment: f64 },
     #[error(
-         "the bore does not hold the outer race: its loads have {} from its nominal position, and {} N of \
-         them (of a moment: over the radius) meet no resistance. Hint: a bore without friction holds a race \
-         across its axis and, along its width, against tilt: check size and direction of the loads, the fit, and \
-          which parts of the solid are fixed",
+         "the bore does not hold the outer race: its loads have {} from its nominal position, and nothing \
+          resists {} N of them (a moment counts as moment divided by radius). Hint: a bore without friction \
+          holds a race across its axis and, along its width, against tilt: check size and direction of the \
+          loads, the fit, and which parts of the solid are fixed",
         travel_text(coordinate, *travel),
         to_digits(*force, 3)
     )]
     NotHeld { coordinate: &'static str, travel: f64, force: f64 },
     #[error(
-         "the housing gives way: it carries all {} N of the load on the outer race (of a moment: over the radius), but \
-         that has {} from its nominal place, more than a hundredth of its radius of {:.4} mm: beyond small \
-         displacements a condensed housing says nothing. Hint: check solid.material.youngs_modulus, which is {} \
-          GPa, and its unit, the loads, and which parts of the solid are fixed",
+         "the housing is too flexible: it carries the full load of {} N on the outer race (a moment counts as \
+          moment divided by radius), but this has {} from its nominal position, more than a hundredth of the \
+          radius of {:.4} mm. A condensed housing is valid for small displacements only. Hint: check \
+          solid.material.youngs_modulus, which is {} GPa, and its unit, the loads, and which parts of the \
+          solid are fixed",
         to_digits(*load, 4), travel_text(coordinate, *travel), 1e3 * *radius,
         to_digits(1e-9 * *youngs_modulus, 6)
     )]
     GivesWay { coordinate: &'static str, travel: f64, load: f64, radius: f64, youngs_modulus: f64 },
     #[error(
-        "race and bore move {motion:.3e} m towards each other, beyond the {travel:.3e} m within \
-         which nodes were kept; condense with a larger travel"
+        "race and bore move {motion:.3e} m towards each other, farther than the {travel:.3e} m for which \
+         nodes were kept; condense with a larger travel"
     )]
     BeyondRange { motion: f64, travel: f64 },
     #[error(

@@ -43,8 +43,8 @@ pub enum SolidShaftError {
     #[error("the section at {at} m has its centre {off} m off the axis X")]
     OffAxis { at: f64, off: f64 },
     #[error(
-        "a rotating shaft in reduced form must be axisymmetric: {what} differs by {part:.1e} of itself between \
-          two directions across the axis; at most {most:.0e} is allowed"
+        "a rotating shaft in reduced form must be axisymmetric: {what} has a relative difference of \
+         {part:.1e} between two directions normal to the axis; at most {most:.0e} is allowed"
     )]
     NotRound { what: &'static str, part: f64, most: f64 },
     #[error(

@@ -51,9 +51,10 @@ pub enum EquilibriumError {
     #[error("{}", free_text(pivot))]
     Free { pivot: Pivot },
     #[error(
-         "no equilibrium found {}: beyond that the stiffness is not positive definite ({pivot}). At rest it is, so \
-         that no part is free to move: the load is too large for the body, or the body buckles. By the linear \
-         law the whole load would move it by {} mm (at {}), and it is {} mm across; {}",
+         "no equilibrium found {}: beyond that the stiffness is not positive definite ({pivot}). Without load \
+          it is positive definite, so that no part is free to move: the load is too large for the body, or the \
+          body buckles. For comparison: a linear solution under the whole load has a displacement of {} mm \
+          (at {}), and the body has a size of {} mm; {}",
         reached_load_text(*reached, moved), millimetres(linear.value), place(&linear.at), millimetres(*size),
         remedy(*poisson_ratio)
     )]

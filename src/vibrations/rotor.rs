@@ -22,8 +22,9 @@ pub enum RotorError {
     #[error("the {size} eigenvalues at {speed} rad/s have not been found")]
     Eigenvalues { speed: f64, size: usize },
     #[error(
-        "{name} rotates with the body at its first end and differs along y and z: its stiffness changes as the body turns, and \
-          the motion about the equilibrium has no frequencies. Hint: make it equal along both, or begin it at a body that does not turn"
+        "{name} rotates with the body at its first end (`from`), and its stiffnesses along y and z differ. \
+         The stiffness of the system therefore changes as the body turns, and it has no natural frequencies. \
+         Hint: make both stiffnesses equal, or attach the first end to a body that does not rotate"
     )]
     Uneven { name: String },
     #[error("no stiffness: a rigid shaft that moves freely has no critical speed")]

@@ -233,8 +233,8 @@ fn the_page_of_warnings_is_that_of_the_table() {
     let mut page = String::from(
         "# Warnings\n\nMade by `WARNINGS=write cargo test --test command warnings`; do not edit by hand.\n\n\
          A warning is printed as `warning[CODE]: text`. `summary.json` has a list `warnings` of `{\"code\", \"text\"}`. `sweep.json` lists each code once, \
-         with the first point that has it and the number of such points. The column `warnings` of `sweep.csv` has the numbers of the codes, two digits \
-         each, without a leading zero: 305 stands for W03 and W05. Scripts should look at the code; texts may change.\n",
+         with the first point that has it and the number of such points. The column `warnings` of `sweep.csv` has one integer: the two-digit numbers \
+         of all codes, one after the other. A zero at its start is dropped: W03 and W05 give 0305, written as 305. Scripts should look at the code; texts may change.\n",
     );
     for entry in &TABLE {
         page += &format!(

@@ -38,18 +38,20 @@ pub enum SolidSetupError {
     )]
     NotHeld { set: String, axis: &'static str, known: Vec<String> },
     #[error(
-        "solid.harmonic.axis: sets \"{set}\" and \"{other}\" hold nodes in common along {axis}, so that \"{set}\" cannot move \
-         along it as a whole. Hint: a plane of symmetry allows motion along itself alone; take the whole body"
+        "solid.harmonic.axis: some nodes of \"{set}\" also belong to \"{other}\", which fixes them along {axis}, so that \
+         \"{set}\" cannot move along {axis} as a whole. Hint: a plane of symmetry allows motion within the plane only; \
+         mesh the whole body for motion normal to it"
     )]
     VibratesTwoWays { set: String, other: String, axis: &'static str },
     #[error(
-        "solid.harmonic.axis: no set but \"{set}\" is fixed along {axis}, so that its motion meets no stiffness. Hint: fix \
-         another one, or ask along another axis"
+        "solid.harmonic.axis: no set but \"{set}\" is fixed along {axis}, so that nothing resists its motion. \
+         Hint: fix another set, or choose another axis"
     )]
     VibratesFreely { set: String, axis: &'static str },
     #[error(
-        "solid.material: the deck has a material ({deck}), which is not taken from there, and the scene names no \
-         {}, so that steel's would be in {} place: {steel}. Write what you mean in [solid]: {write}",
+        "solid.material: the mesh file has a material ({deck}), which this program does not read. The scene \
+         gives no {}, so that steel would be used in {} place: {steel}. Hint: write the values you want in \
+         [solid]: {write}",
         missing.join(" and no "), if missing.len() == 1 { "its" } else { "their" }
     )]
     DeckMaterial { deck: String, missing: Vec<&'static str>, steel: String, write: String },

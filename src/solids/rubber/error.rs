@@ -18,8 +18,8 @@ pub enum RubberError {
     #[error("the angular frequency is {0} rad/s; it must not be negative")]
     Pulsation(f64),
     #[error(
-        "{vectors} vectors leave a change of {change:.1e} in the complex stiffness where {tolerance:.1e} is \
-         allowed"
+        "the complex stiffness does not converge: with {vectors} basis vectors it still changes by \
+         {change:.1e}; {tolerance:.1e} is allowed"
     )]
     NotSettled { vectors: usize, change: f64, tolerance: f64 },
     #[error("elements of four nodes; rubber needs ten-node elements")]
@@ -57,7 +57,8 @@ pub enum StepFailure {
     #[error("the step changes strains by {strain:.3} (root mean square), too much for one step")]
     Far { strain: f64 },
     #[error(
-        "{:.2} % of the work of a step is lost, however short it is: the rubber jumps to another equilibrium", 100.0 * part
+        "{:.2} % of the work of a step is missing from the energy balance, even in the shortest step: the \
+         rubber jumps to another equilibrium", 100.0 * part
     )]
     Jump { part: f64 },
     #[error("the estimated error stays above what is allowed")]
