@@ -47,16 +47,6 @@ pub fn reverse_cuthill_mckee(mesh: TetMesh) -> Renumbered {
     Renumbered { mesh, node, element }
 }
 
-/// Largest difference of node numbers within an element.
-pub fn bandwidth(mesh: &TetMesh) -> u32 {
-    let span = |index: usize| {
-        let nodes = mesh.elements.nodes(index);
-        let bounds = nodes.iter().fold((u32::MAX, 0), |(low, high), &n| (low.min(n), high.max(n)));
-        bounds.1 - bounds.0
-    };
-    (0..mesh.elements.len()).map(span).max().unwrap_or(0)
-}
-
 /// Nodes in breadth-first order, neighbours by degree, each connected part from a peripheral node.
 fn cuthill_mckee(neighbours: &Lists) -> Vec<u32> {
     let count = neighbours.starts.len() - 1;

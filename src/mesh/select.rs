@@ -105,34 +105,6 @@ impl TetMesh {
         Ok(count)
     }
 
-    /// Adds the nodes of a symmetry plane as node set `name`. A plane that cuts through the mesh
-    /// is refused.
-    ///
-    /// # Errors
-    /// [`MeshError::EmptySet`], and [`MeshError::Dimension`] for a plane with nodes on both sides.
-    pub fn add_symmetry_plane(
-        &mut self,
-        name: &str,
-        point: [f64; 3],
-        normal: [f64; 3],
-        tolerance: f64,
-    ) -> Result<usize, MeshError> {
-        let unit = Vector3::from(normal).normalize();
-        let sides =
-            self.nodes.iter().map(|&p| (Vector3::from(p) - Vector3::from(point)).dot(&unit));
-        let (low, high) = sides.fold((0f64, 0f64), |(low, high), s| (low.min(s), high.max(s)));
-        if low < -tolerance && high > tolerance {
-            return Err(MeshError::Dimension {
-                what: "extent behind the symmetry plane",
-                value: high.min(-low),
-                unit: " m",
-                allowed: format!("0 to {tolerance:e} m, the mesh on one side of the plane"),
-            });
-        }
-        let surface = Surface::Plane { point, normal };
-        self.add_node_set(name, &Region::On { surface, tolerance })
-    }
-
     fn empty_set(&self, name: &str, region: &Region) -> MeshError {
         let distances = self.nodes.iter().map(|&p| region.outside(Vector3::from(p)));
         MeshError::EmptySet {

@@ -69,14 +69,6 @@ pub fn node_neighbours(mesh: &TetMesh) -> Lists {
     Lists::from_pairs(pairs, mesh.nodes.len())
 }
 
-/// Elements of each node, ascending.
-pub fn node_elements(mesh: &TetMesh) -> Lists {
-    let per_element = mesh.elements.nodes(0).len();
-    let nodes = mesh.elements.all_nodes().iter().enumerate();
-    let pairs = nodes.map(|(at, &node)| (node, (at / per_element) as u32)).collect();
-    Lists::from_pairs(pairs, mesh.nodes.len())
-}
-
 /// Disjoint sets (union-find).
 pub(crate) struct Union(Vec<u32>);
 

@@ -118,7 +118,7 @@ fn straight_edges_are_refused_and_curved_ones_pass_at_any_fineness() {
         let height = 1e6 * BORE * (1.0 - (std::f64::consts::PI / around as f64).cos());
         let figures = [format!("up to {height:.3} um inside"), format!("{height:.3} um high")];
         for part in figures.iter().map(String::as_str).chain([
-            "scene.toml:29:8: housing.bore: the edges of \"bore\" are straight",
+            "scene.toml:29:8: housing.bore: the element edges of \"bore\" are straight",
             "100 % is missing",
             "35.5270 mm",
             "Mesh.SecondOrderLinear = 0",

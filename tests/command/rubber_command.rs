@@ -345,7 +345,7 @@ fn what_does_not_fit_rubber_is_refused() {
         (
             "check",
             behind("[solid.harmonic]\nset = \"inner\"\naxis = \"x\"\nfrequencies = [\"1 Hz\"]"),
-            &["solid.harmonic.axis", "\"x_low\" hold nodes in common along x"],
+            &["solid.harmonic.axis", "also belong to \"x_low\", which fixes them along x"],
         ),
         (
             "check",

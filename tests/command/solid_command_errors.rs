@@ -162,7 +162,7 @@ fn materials_of_decks_are_not_skipped_for_steel() {
     let aluminium = ("70000., 0.33", "2.7e-9");
     let parts = [
         "\"ALU\"",
-        "steel's would be in their place",
+        "steel would be used in their place",
         "youngs_modulus = \"70 GPa\"",
         "0.33",
         "\"2700 kg/m^3\"",
@@ -181,7 +181,7 @@ fn materials_of_decks_are_not_skipped_for_steel() {
     // What the scene does name is not called missing.
     let elastic = "[solid.material]\nyoungs_modulus = \"70 GPa\"\npoisson_ratio = 0.33\n";
     let parts =
-        ["the scene names no density, so that", "in its place: density 7850 kg/m^3", "2700 kg/m^3"];
+        ["The scene gives no density, so that", "in its place: density 7850 kg/m^3", "2700 kg/m^3"];
     refused(&place, &scene(aluminium.0, aluminium.1, elastic), &parts);
     let density = "[solid.material]\ndensity = \"2700 kg/m^3\"\n";
     let parts =

@@ -325,7 +325,7 @@ unbalance = [{{ at = "100 mm", size = "{size}" }}]
     let error = read(&shaft(torque, "2e-2 kg m", "")).unwrap_err();
     assert!(
         error.contains(
-            "body.shaft.beam: its unbalances, with a body driven by a torque, are masses of"
+            "body.shaft.beam: the unbalances of a shaft driven by a torque have a moment of inertia of"
         ),
         "{error}"
     );

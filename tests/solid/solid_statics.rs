@@ -187,7 +187,7 @@ fn a_load_that_is_far_too_large_is_called_so() {
     assert!(said.contains("no part is free to move: the load is too large"), "{said}");
     assert!(said.contains(&format!("({pivot})")) && !said.contains("(pivot "), "{said}");
     let millimetres = bearing_dynamics::numeric::clock::to_digits(1e3 * linear.value, 4);
-    assert!(said.contains(&format!("would move it by {millimetres} mm")), "{said}");
+    assert!(said.contains(&format!("has a displacement of {millimetres} mm")), "{said}");
 }
 
 /// A second part that nothing holds is named by a node of its own.
