@@ -25,8 +25,8 @@ pub enum SimulationError {
     )]
     NothingToMeasure,
     #[error(
-        "a fraction of the stability limit is a step for Runge-Kutta of fourth order only; give \
-         {0} an accuracy or a step (numerics.accuracy, numerics.step)"
+        "numerics.step_fraction, a fraction of the stability limit, is allowed for Runge-Kutta of fourth \
+         order only; for {0} write numerics.accuracy or numerics.step"
     )]
     FractionOfOther(&'static str),
     #[error(

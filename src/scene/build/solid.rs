@@ -32,8 +32,8 @@ pub enum SolidSetupError {
     )]
     FourNodes,
     #[error(
-        "solid.harmonic.set: \"{set}\" is not fixed along {axis}, and only what is fixed or moved has a \
-         stiffness; [[solid.fixed]] has: {}",
+        "solid.harmonic.set: \"{set}\" is not fixed along {axis}; a stiffness can be computed only for a set \
+         in [[solid.fixed]], which has: {}",
         list(known)
     )]
     NotHeld { set: String, axis: &'static str, known: Vec<String> },
