@@ -327,7 +327,7 @@ fn bad_assemblies_are_refused() {
         (
             "loads on a race that is part of a shaft",
             format!("{whole}\n[inner_race]\nz = {{ load = \"1 N\" }}\n"),
-            vec!["inner_race.z", "sits on body.shaft"],
+            vec!["inner_race.z", "this race is on body.shaft"],
         ),
         (
             "a name no column could have",

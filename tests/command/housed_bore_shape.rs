@@ -119,7 +119,7 @@ fn straight_edges_are_refused_and_curved_ones_pass_at_any_fineness() {
         let figures = [format!("up to {height:.3} um inside"), format!("{height:.3} um high")];
         for part in figures.iter().map(String::as_str).chain([
             "scene.toml:29:8: housing.bore: the element edges of \"bore\" are straight",
-            "100 % is missing",
+            "100 % of it is missing",
             "35.5270 mm",
             "Mesh.SecondOrderLinear = 0",
             "order = 2",
