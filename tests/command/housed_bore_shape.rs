@@ -116,7 +116,8 @@ fn straight_edges_are_refused_and_curved_ones_pass_at_any_fineness() {
         let straight = elevate(&annulus(around, Order::Linear), &[]).unwrap().mesh;
         let message = refused(&place, &with_mesh(&place, &straight, 2, ""));
         let height = 1e6 * BORE * (1.0 - (std::f64::consts::PI / around as f64).cos());
-        let figures = [format!("up to {height:.3} um inside"), format!("arc height of {height:.3} um")];
+        let figures =
+            [format!("up to {height:.3} um inside"), format!("arc height of {height:.3} um")];
         for part in figures.iter().map(String::as_str).chain([
             "scene.toml:29:8: housing.bore: the element edges of \"bore\" are straight",
             "100 % of it is missing",
