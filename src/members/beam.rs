@@ -1,9 +1,9 @@
 //! A stepped, hollow shaft with discs as matrices over stations along its axis.
 //!
 //! X is the axis, Z up. The lateral coordinates of a station are y, z (m) and the rotations about Y and Z (rad),
-//! right-handed: in pure bending turn_z = dy/dx and turn_y = −dz/dx. With spin Ω about X the equation of motion is M q̈
-//! + Ω G q̇ + K q = loads (N, N, N·m, N·m); axial stretch is a separate bar. The same matrices follow from tetrahedra
-//! condensed onto the stations ([`crate::solids::condensed_shaft`]), if a shaft has a mesh.
+//! right-handed: in pure bending turn_z = dy/dx and turn_y = −dz/dx. With spin Ω about X the equation of motion is
+//! M q̈ + Ω G q̇ + K q = loads (N, N, N·m, N·m); axial stretch is a separate bar. The same matrices follow from
+//! tetrahedra condensed onto the stations ([`crate::solids::condensed_shaft`]), if a shaft has a mesh.
 
 use crate::ch4_rotor::beam::{Element, NODES, PlaneMatrix, Section, ShearCoefficient, shortening};
 use crate::ch4_rotor::disc;
