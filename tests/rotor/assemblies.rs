@@ -172,8 +172,8 @@ fn an_orbit_that_turns_with_the_shaft_feels_no_damping_inside_it() {
     let (at, speed) = (without.stations[0], 0.8 * SPEED);
     let unbalance = Unbalance { at, moment: 1e-3, angle: 0.4 };
     let orbits = [&without, &with].map(|model| {
-        let response = response(&model, &[unbalance], speed).unwrap();
-        orbit(&model, &response, 0).circles()
+        let response = response(model, &[unbalance], speed).unwrap();
+        orbit(model, &response, 0).circles()
     });
     let [[forward, backward], [same, _]] = orbits;
     assert!(backward <= 1e-8 * forward, "{backward} {forward} {same}");
