@@ -7,7 +7,7 @@
 use crate::assembly::loads::{CageBody, Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation};
 use crate::assembly::mount::Mount;
 use crate::ch2_housing::bearing::ball_contact::BallContactLaw;
-use crate::ch2_housing::bearing::cage::CageContacts;
+use crate::ch2_housing::bearing::cage::{CageContact, CageContacts, cage_stiffness};
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
@@ -15,8 +15,10 @@ use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::ch3_bushing::dent::Dent;
 use crate::equilibrium::initial::prescribed_speed;
+use crate::members::cage_nodes::CageNodes;
 use crate::members::connection::Connection;
 use crate::members::flexible_shaft::ElasticShaft;
+use crate::members::floating_solid::FloatingSolid;
 use crate::members::housing_fit::Seat;
 use crate::members::reduced_solid::ReducedSolid;
 use crate::members::sensor::Sensor;
@@ -37,6 +39,8 @@ pub struct Assembly {
     pub seats: Vec<Seat>,
     /// Flexible bodies, at most one entry each.
     pub shafts: Vec<ElasticShaft>,
+    /// Flexible solids on rotating bodies, at most one for each body.
+    pub floating: Vec<FloatingSolid>,
     /// Sensors do not change the motion.
     pub sensors: Vec<Sensor>,
     /// m/s².
@@ -145,9 +149,19 @@ pub struct Caged {
     /// Index in [`Assembly::bodies`].
     pub body: usize,
     pub contacts: CageContacts,
+    /// Contact by nodes of its mesh, instead of by the surfaces of `contacts`.
+    pub nodes: Option<CageNodes>,
 }
 
 impl Caged {
+    /// Stiffness of a loaded contact, N/m; of nodes the sum of those that touch.
+    pub fn stiffness(&self, contact: &CageContact) -> f64 {
+        match &self.nodes {
+            Some(_) => contact.normal_load / contact.penetration,
+            None => cage_stiffness(&self.contacts.force, contact.penetration),
+        }
+    }
+
     /// Largest displacement of a ball from the middle of its pocket, m.
     pub fn room(&self, bearing: &Bearing) -> f64 {
         self.contacts.pocket_radius - bearing.geometry.ball_radius
@@ -368,7 +382,7 @@ impl From<&DynamicProblem> for Assembly {
         let mut bodies = vec![inner, outer];
         let cage = problem.cage.as_ref().map(|CageBody { inertia, contacts }| {
             bodies.push(body("the cage", Mobility::Free(*inertia)));
-            Caged { body: CAGE, contacts: *contacts }
+            Caged { body: CAGE, contacts: *contacts, nodes: None }
         });
         let bearing = Bearing {
             name: None,
@@ -393,6 +407,7 @@ impl From<&DynamicProblem> for Assembly {
             solids: Vec::new(),
             seats: Vec::new(),
             shafts: Vec::new(),
+            floating: Vec::new(),
             sensors: Vec::new(),
             gravity: problem.gravity,
         }

@@ -2,13 +2,13 @@
 //!
 //! The balls of each bearing come first, component by component (all x, all y, …), padded to whole lanes. Bodies
 //! (races, cages, shafts) follow one by one, then the modal coordinates and rates of each reduced solid, the
-//! elongations of Maxwell elements, flexible shafts, and the energy ledger.
-//! far the springs of Maxwell elements are stretched; the energy ledger comes last.
+//! elongations of Maxwell elements, flexible shafts, floating solids, and the energy ledger.
 
 use crate::assembly::lists::Assembly;
 use crate::kinematics::vec3::Vec3;
 use crate::members::connection::Connection;
 use crate::members::flexible_shaft::ElasticShaft;
+use crate::members::floating_solid::FloatingSolid;
 use crate::members::reduced_solid::ReducedSolid;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -23,6 +23,8 @@ pub struct Places {
     of_connections: usize,
     /// Entries of all flexible shafts.
     of_shafts: usize,
+    /// Entries of all floating solids.
+    of_floating: usize,
 }
 
 /// Number of entries of a connection: six for each Maxwell element.
@@ -39,6 +41,7 @@ impl Places {
             of_solids: assembly.solids.iter().map(|solid| 2 * solid.count()).sum(),
             of_connections: assembly.connections.iter().map(connection_entries).sum(),
             of_shafts: assembly.shafts.iter().map(ElasticShaft::entries).sum(),
+            of_floating: assembly.floating.iter().map(|solid| 2 * solid.count()).sum(),
         }
     }
 
@@ -75,13 +78,25 @@ impl Places {
         assembly.shafts.iter().map(&mut first).collect()
     }
 
+    /// First entries of each floating solid: amplitudes (m), then as many rates (m/s).
+    pub fn floating(&self, assembly: &Assembly) -> Vec<usize> {
+        let mut next = self.ledger() - self.of_floating;
+        let mut first = |solid: &FloatingSolid| {
+            let at = next;
+            next += 2 * solid.count();
+            at
+        };
+        assembly.floating.iter().map(&mut first).collect()
+    }
+
     /// First of the 13 entries of a body.
     pub fn body(&self, body: usize) -> usize {
         self.first_body + BODY * body
     }
 
     pub fn ledger(&self) -> usize {
-        self.body(self.bodies) + self.of_solids + self.of_connections + self.of_shafts
+        let rigid = self.body(self.bodies);
+        rigid + self.of_solids + self.of_connections + self.of_shafts + self.of_floating
     }
 
     pub fn ledger_entry(&self, entry: Ledger) -> usize {

@@ -1,2 +1,5 @@
-//! Chapter 5: monitoring of the cage by a telemeter.
+//! Chapter 5: the flexible cage and its monitoring by a telemeter.
+
+pub mod floating_frame;
+pub mod node_contact;
 pub mod telemeter;

@@ -17,6 +17,7 @@ use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::slices::{Motion, Slices};
 use crate::kinematics::vec3::{Vec3, add, cross, scale, sub};
+use crate::members::cage_nodes::{CageNodes, CageNow, Touched};
 use crate::members::contacts;
 use crate::members::contacts::{ContactLaws, ContactTable, Kernel, Want, Work, lane};
 use crate::members::dent_table::DentError;
@@ -47,10 +48,23 @@ pub struct BallSet {
     pub on_races: [Wrench; 2],
     /// Loads on the cage, about its own centre.
     pub on_cage: Wrench,
+    /// Energy stored in contacts of the cage's nodes, J; without nodes it follows from the contacts.
+    pub cage_energy: f64,
+    /// Modal forces of the normal loads between the cage's nodes and the land, for both ends, N.
+    pub guide_modes: [Vec<f64>; 2],
     /// Error of its dents; there is no motion then.
     pub no_dents: Option<DentError>,
     ball_force: Vec<Vec3>,
     ball_moment: Vec<Vec3>,
+}
+
+/// Where the forces of a bearing's contacts go, in addition to its bodies.
+pub struct ContactForces<'e> {
+    /// Rates of the balls.
+    pub rates: &'e mut [f64],
+    pub ledger: &'e mut [f64; LEDGER],
+    /// Modes of a cage with contact nodes: amplitudes (m), rates (m/s), and modal forces (N).
+    pub modes: Option<([&'e [f64]; 2], &'e mut [f64])>,
 }
 
 fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64, outward: f64) -> RaceLaw {
@@ -109,6 +123,11 @@ impl BallSet {
             cage: bearing.cage.as_ref().map(|cage| bodies[cage.body]),
             on_races: [Wrench::default(); 2],
             on_cage: Wrench::default(),
+            cage_energy: 0.0,
+            guide_modes: bearing.cage.as_ref().and_then(|cage| cage.nodes.as_ref()).map_or_else(
+                Default::default,
+                |nodes| [0, 1].map(|_| vec![0.0; nodes.largest.len()]),
+            ),
             no_dents,
             ball_force: vec![[0.0; 3]; layout.balls],
             ball_moment: vec![[0.0; 3]; layout.balls],
@@ -139,8 +158,7 @@ impl BallSet {
         driver: Kernel,
         want: Want,
         state: &[f64],
-        rates: &mut [f64],
-        ledger: &mut [f64; LEDGER],
+        ContactForces { rates, ledger, modes }: ContactForces,
         work: &mut Work,
         ran: &mut Counts,
     ) {
@@ -162,11 +180,19 @@ impl BallSet {
         if self.steps.ball_contact {
             self.add_ball_contacts(bearing, state, ledger, work, ran);
         }
-        if self.steps.pockets {
-            self.add_pocket_contacts(bearing, state, ledger, work, ran);
-        }
-        if self.steps.guide {
-            self.add_guide_contacts(bearing, ledger, work, ran);
+        match (modes, bearing.cage.as_ref().and_then(|cage| cage.nodes.as_ref())) {
+            (Some((modes, forces)), Some(nodes)) => {
+                let modal = (modes, forces);
+                self.add_node_contacts((bearing, nodes), state, modal, ledger, work, ran);
+            }
+            _ => {
+                if self.steps.pockets {
+                    self.add_pocket_contacts(bearing, state, ledger, work, ran);
+                }
+                if self.steps.guide {
+                    self.add_guide_contacts(bearing, ledger, work, ran);
+                }
+            }
         }
         self.ball_rates(bearing, state, rates);
     }
@@ -345,6 +371,52 @@ impl BallSet {
         }
         work.pocket_tests += self.layout.balls as u64;
         ran.add(Stage::Pockets, self.layout.balls as u64);
+    }
+
+    /// Contacts of the cage's nodes with each ball and with the guiding race; adds modal forces of the cage.
+    fn add_node_contacts(
+        &mut self,
+        (bearing, nodes): (&Bearing, &CageNodes),
+        state: &[f64],
+        (modes, forces): ([&[f64]; 2], &mut [f64]),
+        ledger: &mut [f64; LEDGER],
+        work: &mut Work,
+        ran: &mut Counts,
+    ) {
+        let (Some(caged), Some(cage)) = (&bearing.cage, self.cage) else { return };
+        let now = CageNow { body: &cage, modes, bound: nodes.bound(modes[0]) };
+        self.cage_energy = 0.0;
+        for ball in 0..self.layout.balls {
+            let motion = AxisMotion {
+                position: self.layout.ball_vector(state, POSITION, ball),
+                velocity: self.layout.ball_vector(state, VELOCITY, ball),
+                spin: self.layout.ball_vector(state, SPIN, ball),
+                axis: [1.0, 0.0, 0.0],
+            };
+            let found = nodes.pocket(ball, &now, &motion, self.laws.ball_radius, forces);
+            self.pockets[ball] = found.contact;
+            self.ball_force[ball] = add(self.ball_force[ball], found.on_other.force);
+            self.ball_moment[ball] = add(self.ball_moment[ball], found.on_other.moment);
+            self.take_contact(&found, ledger);
+            work.pocket_tests += found.tested;
+        }
+        ran.add(Stage::Pockets, self.layout.balls as u64);
+        let Some(side) = guiding_side(caged.contacts.guidance) else { return };
+        let race = &self.races[side].motion;
+        let found = nodes.land(&now, race, forces, &mut self.guide_modes);
+        for (end, found) in found.iter().enumerate() {
+            self.guides[end] = found.contact;
+            self.on_races[side].add(&found.on_other);
+            self.take_contact(found, ledger);
+            work.guide_tests += found.tested;
+        }
+        ran.add(Stage::Guide, 2);
+    }
+
+    fn take_contact(&mut self, found: &Touched, ledger: &mut [f64; LEDGER]) {
+        self.on_cage.add(&found.on_cage);
+        self.cage_energy += found.energy;
+        ledger[Ledger::CageFriction as usize] += found.contact.power;
     }
 
     /// Contacts of both ends of the cage with its guiding race.

@@ -8,7 +8,7 @@ use crate::assembly::plan::steps::BodySteps;
 use crate::assembly::state::{
     BodyState, LEDGER, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
 };
-use crate::kinematics::vec3::{Vec3, add, add_scaled, dot};
+use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, scale};
 use crate::members::rigid_body;
 use crate::members::rigid_body::BodyKinematics;
 use crate::members::unbalance::{bent_of, directions, turning_momentum};
@@ -33,13 +33,27 @@ impl System {
             loads.force = add_scaled(loads.force, inertia.mass, self.assembly.gravity);
             self.ran.whole.add(Stage::Gravity, 1);
         }
-        let (acceleration, spin_rate) = match &body.mobility {
-            Mobility::Fixed => return,
-            Mobility::Free(inertia) => {
+        let (acceleration, spin_rate) = match (&body.mobility, steps.floating) {
+            (Mobility::Fixed, _) => return,
+            (Mobility::Free(inertia), Some(of)) => {
+                let (solid, at) = (&self.assembly.floating[of], self.floating[of]);
+                let entries = at..at + 2 * solid.count();
+                let (spin_rate, damped) = solid.rates(
+                    now,
+                    loads.moment,
+                    &state[entries.clone()],
+                    &mut self.floating_now[of],
+                    &mut rates[entries],
+                );
+                ledger[Ledger::Foundation as usize] += damped;
+                own.add(Stage::Reduced, 1);
+                (scale(loads.force, 1.0 / inertia.mass), spin_rate)
+            }
+            (Mobility::Free(inertia), None) => {
                 let (axis, spin) = (now.motion.axis, now.motion.spin);
                 rigid_body::free_rates(inertia, axis, spin, loads.force, loads.moment)
             }
-            Mobility::Driven(driven) => {
+            (Mobility::Driven(driven), _) => {
                 let t = t.min(self.latest);
                 let BodyState { velocity, spin, .. } = now.state;
                 if let Some([turning, within]) = turning_force(body, now, t, steps, own) {

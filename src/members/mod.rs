@@ -3,12 +3,14 @@
 pub mod ball_set;
 pub mod beam;
 pub mod body_rates;
+pub mod cage_nodes;
 pub mod connection;
 pub mod contact_traction;
 pub mod contacts;
 pub mod dent_table;
 pub mod dents;
 pub mod flexible_shaft;
+pub mod floating_solid;
 pub mod half_space;
 pub mod housing_fit;
 pub mod race_position;

@@ -8,13 +8,17 @@
 //! modes, as in a tight fit of a fine mesh, the modal equations with the contact springs, D + h²γ² Sᵀ k S, are solved
 //! instead.
 
-use crate::members::reduced_solid::Surface;
+use crate::members::reduced_solid::{Surface, SurfaceNode};
 use crate::motion::elimination::LdltMatrix;
 use crate::motion::linearised::{Linearised, SeatRow, Shapes};
 use crate::motion::system::System;
 
 /// Modes added to the matrix at a time; each pass over it is memory traffic.
 const TOGETHER: usize = 4;
+
+/// Row of a cage instead of a node.
+const NO_NODE: SurfaceNode =
+    SurfaceNode { node: 0, place: [0.0; 3], normal: [0.0; 3], area: 0.0 };
 
 /// Part of the matrix of one solid, and its working memory.
 #[derive(Clone, Debug)]
@@ -43,10 +47,18 @@ pub(crate) struct SolidBlock {
 
 #[derive(Clone, Debug)]
 struct SeatShapes {
-    hub: Option<usize>,
+    hubs: [Option<usize>; 2],
     surface: Surface,
     by_node: Vec<f64>,
     outward: Vec<f64>,
+}
+
+impl SeatShapes {
+    /// Hubs with the lever of a row on each.
+    fn levers<'r>(&self, row: &'r SeatRow) -> impl Iterator<Item = (usize, &'r [f64; 6])> + use<'r> {
+        let hubs = self.hubs.into_iter().zip(&row.levers);
+        hubs.filter_map(|(hub, lever)| Some((hub?, lever)))
+    }
 }
 
 impl SolidBlock {
@@ -55,13 +67,18 @@ impl SolidBlock {
         let seats = linearised.seats.iter().enumerate().filter(|(_, joint)| joint.solid == index);
         let seats: Vec<(usize, SeatShapes)> = seats
             .map(|(number, joint)| {
-                let seat = &system.assembly.seats[number];
-                let surface = system.assembly.solids[index].surfaces[seat.surface].clone();
+                let surface = match system.assembly.seats.get(number) {
+                    Some(seat) => system.assembly.solids[index].surfaces[seat.surface].clone(),
+                    None => Surface {
+                        nodes: vec![NO_NODE; 2],
+                        shapes: vec![0.0; joint.shapes.len()],
+                    },
+                };
                 let (by_node, outward) = (surface.by_node(), vec![0.0; surface.nodes.len()]);
-                (number, SeatShapes { hub: joint.hub, surface, by_node, outward })
+                (number, SeatShapes { hubs: joint.hubs, surface, by_node, outward })
             })
             .collect();
-        let mut hubs: Vec<usize> = seats.iter().filter_map(|(_, seat)| seat.hub).collect();
+        let mut hubs: Vec<usize> = seats.iter().flat_map(|(_, seat)| seat.hubs).flatten().collect();
         hubs.sort_unstable();
         hubs.dedup();
         let nodes = seats.iter().map(|(_, seat)| seat.outward.len()).sum();
@@ -95,7 +112,16 @@ impl SolidBlock {
             *yielding = 1.0 / (1.0 + scale * (solid.damping + scale * stiffness));
         }
         rows.clear();
-        for (own, (number, _)) in seats.iter().enumerate() {
+        for (own, (number, seat)) in seats.iter_mut().enumerate() {
+            let joint = &linearised.seats[*number];
+            if !joint.shapes.is_empty() {
+                seat.by_node.copy_from_slice(&joint.shapes);
+                let count = seat.outward.len();
+                let shapes = joint.shapes.len() / count;
+                for (i, shape) in seat.surface.shapes.iter_mut().enumerate() {
+                    *shape = joint.shapes[(i % count) * shapes + i / count];
+                }
+            }
             rows.extend(linearised.seats[*number].nodes.iter().map(|row| (own, *row)));
         }
         *by_shapes = rows.len() > yielding.len();
@@ -131,15 +157,16 @@ impl SolidBlock {
             for (k, shape) in of_node.iter().enumerate() {
                 matrix.add_to_row(k, k, weight * row.along * row.along * shape, &of_node[k..]);
             }
-            let Some(hub) = seat.hub else { continue };
+            let Some(hub) = seat.hubs[0] else { continue };
             let coupled = hubs.iter().zip(coupled.iter_mut()).filter(|(of, _)| **of == hub);
-            let push = row.lever.map(|lever| weight * row.along * lever);
+            let lever = &row.levers[0];
+            let push = lever.map(|lever| weight * row.along * lever);
             for (to, shape) in coupled.flat_map(|(_, coupled)| coupled).zip(of_node) {
                 (0..6).for_each(|i| to[i] += push[i] * shape);
             }
             for i in 0..6 {
-                let (at, push) = (6 * hub + i, weight * row.lever[i]);
-                schur.add_to_row(at, at, push, &row.lever[i..]);
+                let (at, push) = (6 * hub + i, weight * lever[i]);
+                schur.add_to_row(at, at, push, &lever[i..]);
             }
         }
         matrix.factor();
@@ -172,12 +199,12 @@ impl SolidBlock {
         }
         for (own, row) in rows.iter() {
             let seat = &seats[*own].1;
-            let lever = seat.hub.map_or(0.0, |hub| inner(&row.lever, &moved[hub]));
+            let lever = seat.hubs[0].map_or(0.0, |hub| inner(&row.levers[0], &moved[hub]));
             let push = scale * row.stiffness * (row.along * seat.outward[row.node] + lever);
             let of_node = &seat.by_node[row.node * shapes..][..shapes];
             forces.iter_mut().zip(of_node).for_each(|(to, shape)| *to -= row.along * push * shape);
-            let Some(hub) = seat.hub else { continue };
-            (0..6).for_each(|j| to[6 * hub + j] -= row.lever[j] * push);
+            let Some(hub) = seat.hubs[0] else { continue };
+            (0..6).for_each(|j| to[6 * hub + j] -= row.levers[0][j] * push);
         }
         gone.clone_from(forces);
         matrix.solve(gone);
@@ -224,17 +251,18 @@ impl SolidBlock {
         let SolidBlock { seats, hubs, rows, matrix, levered, .. } = self;
         for (hub, levered) in hubs.iter().zip(levered) {
             levered.clear();
-            levered.extend(rows.iter().map(|(own, row)| match seats[*own].1.hub {
-                Some(of) if of == *hub => row.lever,
-                _ => [0.0; 6],
+            levered.extend(rows.iter().map(|(own, row)| {
+                let mut own = seats[*own].1.levers(row).filter(|(of, _)| of == hub);
+                own.next().map_or([0.0; 6], |(_, lever)| *lever)
             }));
             matrix.solve_six(levered);
             for ((own, row), held) in rows.iter().zip(levered) {
-                let Some(other) = seats[*own].1.hub.filter(|other| other <= hub) else { continue };
-                for i in 0..6 {
-                    let from = if other == *hub { i } else { 0 };
-                    let held = held.map(|held| row.lever[i] * held);
-                    schur.add_to_row(6 * other + i, 6 * hub + from, 1.0, &held[from..]);
+                for (other, lever) in seats[*own].1.levers(row).filter(|(other, _)| other <= hub) {
+                    for i in 0..6 {
+                        let from = if other == *hub { i } else { 0 };
+                        let held = held.map(|held| lever[i] * held);
+                        schur.add_to_row(6 * other + i, 6 * hub + from, 1.0, &held[from..]);
+                    }
                 }
             }
         }
@@ -267,14 +295,16 @@ impl SolidBlock {
         pushes.clear();
         pushes.extend(rows.iter().map(|(own, row)| {
             let seat = &seats[*own].1;
-            let lever = seat.hub.map_or(0.0, |hub| inner(&row.lever, &moved[hub]));
+            let lever = seat.levers(row).map(|(hub, lever)| inner(lever, &moved[hub]));
+            let lever: f64 = lever.sum();
             row.along * seat.outward[row.node] + lever / scale
         }));
         matrix.solve(pushes);
         for ((own, row), push) in rows.iter().zip(&*pushes) {
-            let Some(hub) = seats[*own].1.hub else { continue };
-            for j in 0..6 {
-                hubs[6 * hub + j] -= row.lever[j] * push;
+            for (hub, lever) in seats[*own].1.levers(row) {
+                for j in 0..6 {
+                    hubs[6 * hub + j] -= lever[j] * push;
+                }
             }
         }
     }

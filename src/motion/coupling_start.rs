@@ -154,9 +154,10 @@ fn fixed_start(
         held.bodies[*body].fix();
     }
     let mut state = start::at_equilibrium(&held)?;
-    // The ledger entries of the springs follow those of the other connections and precede flexible shafts.
+    // The ledger entries of the springs follow those of the other connections and precede flexible shafts and floating solids.
     let [own, with_springs] = [assembly, &held].map(|of| Places::of(of).ledger());
     let bent: usize = assembly.shafts.iter().map(ElasticShaft::entries).sum();
+    let bent = bent + assembly.floating.iter().map(|solid| 2 * solid.count()).sum::<usize>();
     state.drain(own - bent..with_springs - bent);
     for &body in in_solids {
         if held.bodies[body].driven().is_some() {

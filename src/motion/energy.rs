@@ -22,7 +22,7 @@ pub struct Energy {
     pub foundation: f64,
     /// Stored in contacts between balls.
     pub ball_contact: f64,
-    /// Motion and strain of reduced solids.
+    /// Motion and strain of reduced and floating solids.
     pub solid_kinetic: f64,
     pub solid_strain: f64,
     /// Bending of shafts.
@@ -66,15 +66,28 @@ impl System {
                 add_body(&bearing.ball, [1.0, 0.0, 0.0], &body);
             }
         }
-        for (body, now) in assembly.bodies.iter().zip(&self.bodies) {
+        let floats = |body: usize| assembly.floating.iter().any(|solid| solid.body == body);
+        for (index, (body, now)) in assembly.bodies.iter().zip(&self.bodies).enumerate() {
             let Some(inertia) = body.inertia() else { continue };
-            let parts = [now.state.position, now.state.velocity, now.state.spin];
-            add_body(inertia, now.motion.axis, &parts);
+            // The rotation of a floating solid is in its own energy.
+            let spin = if floats(index) { [0.0; 3] } else { now.state.spin };
+            add_body(inertia, now.motion.axis, &[now.state.position, now.state.velocity, spin]);
+        }
+        for (index, solid) in assembly.floating.iter().enumerate() {
+            let entries = self.deformed(state, index);
+            let [kinetic, strain] = solid.energy(&self.bodies[solid.body], entries);
+            energy.solid_kinetic += kinetic;
+            energy.solid_strain += strain;
         }
         for (set, bearing) in self.sets.iter().zip(&assembly.bearings) {
             if let Some(cage) = &bearing.cage {
-                for contact in set.pockets.iter().chain(&set.guides) {
-                    energy.cage_contact += cage_energy(&cage.contacts.force, contact.penetration);
+                if cage.nodes.is_some() {
+                    energy.cage_contact += set.cage_energy;
+                } else {
+                    for contact in set.pockets.iter().chain(&set.guides) {
+                        energy.cage_contact +=
+                            cage_energy(&cage.contacts.force, contact.penetration);
+                    }
                 }
             }
             for (race, law) in set.laws.races.iter().enumerate() {

@@ -106,6 +106,26 @@ fn shapes(assembly: &Assembly, places: &Places) -> Vec<ShapeScale> {
     for (shaft, at) in assembly.shafts.iter().zip(places.shafts(assembly)) {
         all.extend(of_shaft(assembly, shaft, at));
     }
+    all.extend(of_cages(assembly, places));
+    all
+}
+
+/// Modes of cages with contact nodes, by the displacement of these nodes.
+fn of_cages(assembly: &Assembly, places: &Places) -> Vec<ShapeScale> {
+    let first = places.floating(assembly);
+    let mut all = Vec::new();
+    for cage in assembly.bearings.iter().filter_map(|bearing| bearing.cage.as_ref()) {
+        let Some(nodes) = &cage.nodes else { continue };
+        let (solid, at) = (&assembly.floating[nodes.floating], first[nodes.floating]);
+        let race = Scale { mass: solid.frame.mass, arm: arm(assembly, cage.body) };
+        let count = solid.count();
+        all.extend((0..count).map(|k| ShapeScale {
+            at: [at + k, at + count + k],
+            reach: nodes.largest[k],
+            frequency: solid.frame.frequencies[k],
+            race,
+        }));
+    }
     all
 }
 

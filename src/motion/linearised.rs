@@ -9,12 +9,12 @@
 //! displacements in a right-hand side only. That keeps the matrix symmetric and changes its slopes by a part hγ ·
 //! (rotation rate). Orbits are described in rotating frames ([`crate::motion::orbit_frame`]). The matrix omits the
 //! rotation of the normal force as a ball leaves the axes of its frame, the dependence of traction on entrainment
-//! speed, and gyroscopic moments, also those of flexible shafts. A W-method keeps its order without them.
+//! speed, gyroscopic moments, also those of flexible shafts, and the coupling of a flexible cage's modes with its contacts and
+//! its frame. A W-method keeps its order without them.
 
 use crate::assembly::lists::{Bearing, Mobility};
 use crate::assembly::loads::{Drive, DrivenBody, Rotation};
 use crate::assembly::state::LANES;
-use crate::ch2_housing::bearing::cage::cage_stiffness;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, scale, sub};
 use crate::members::ball_set::{BallSet, guiding_side};
@@ -103,12 +103,16 @@ pub struct Shapes {
 }
 
 /// A race in the bore of a reduced solid: one row for each contact node. The rotation of the normals, load over radius
-/// relative to the stiffness (1e-4), is omitted.
+/// relative to the stiffness (1e-4), is omitted. Or a flexible cage on its guiding race: one row for each end.
 #[derive(Clone, Debug, Default)]
 pub struct SeatJoint {
-    pub hub: Option<usize>,
+    /// The race, and the frame of a floating solid.
+    pub hubs: [Option<usize>; 2],
     pub solid: usize,
     pub nodes: Vec<SeatRow>,
+    /// Modes at the rows of a cage, which change from step to step: all modes of the first row, of the second; empty for
+    /// a bore.
+    pub shapes: Vec<f64>,
 }
 
 /// Approach of race and bore at a node.
@@ -118,8 +122,8 @@ pub struct SeatRow {
     pub node: usize,
     /// N/m.
     pub stiffness: f64,
-    /// Approach per velocity of the hub.
-    pub lever: [f64; 6],
+    /// Approach per velocity of each hub.
+    pub levers: [[f64; 6]; 2],
     /// Approach per speed of the node along its own normal.
     pub along: f64,
 }
@@ -166,6 +170,7 @@ pub struct Linearised {
     pub shafts: Vec<Shapes>,
     /// Hub of each body of the assembly.
     pub hub_of: Vec<Option<usize>>,
+    /// Reduced solids, then floating ones.
     pub solids: Vec<Shapes>,
     pub seats: Vec<SeatJoint>,
 }
@@ -231,11 +236,30 @@ impl Linearised {
         });
         let seated = assembly.seats.iter().zip(&system.seats).zip(&system.holds.seats);
         let seats = seated.map(|((seat, now), hold)| SeatJoint {
-            hub: hub_at(hold, seat.race.body),
+            hubs: [hub_at(hold, seat.race.body), None],
             solid: seat.solid,
             nodes: Vec::with_capacity(now.outward.len()),
+            shapes: Vec::new(),
         });
-        let (solids, seats) = (solids.collect(), seats.collect());
+        let seats: Vec<SeatJoint> = seats.collect();
+        let cages = assembly.bearings.iter().enumerate().filter_map(|(index, bearing)| {
+            let nodes = bearing.cage.as_ref()?.nodes.as_ref()?;
+            let count = nodes.largest.len();
+            // Fewer modes than rows: the joint of the guide has the contact of a rigid cage.
+            (count >= 2).then(|| SeatJoint {
+                hubs: joints[2 * index].hubs,
+                solid: assembly.solids.len() + nodes.floating,
+                nodes: Vec::with_capacity(2),
+                shapes: vec![0.0; 2 * count],
+            })
+        });
+        let seats = seats.into_iter().chain(cages);
+        // The forces of contact nodes on modes are omitted: they are far softer than the modes.
+        let floating = assembly.floating.iter().zip(&system.floating).map(|(solid, &at)| {
+            let stiffness: Vec<f64> = solid.frame.frequencies.iter().map(|w| w * w).collect();
+            Shapes { at, stiffness, damping: solid.frame.damping }
+        });
+        let (solids, seats) = (solids.chain(floating).collect(), seats.collect());
         let shafts = linearised_shafts::shapes(system);
         Linearised { blocks, joints, relaxing, hubs, sections, shafts, hub_of, solids, seats }
     }
@@ -280,6 +304,11 @@ impl Linearised {
                 (&system.assembly.bearings[index], &system.holds.bearings[index]);
             update_guides(guides, set, (bearing, holds), &system.bodies, hubs);
         }
+        let of_cages = system.sets.iter().enumerate().filter(|(_, set)| set.guide_modes[0].len() >= 2);
+        let first_cage = system.assembly.seats.len();
+        for (joint, (index, set)) in seats[first_cage..].iter_mut().zip(of_cages) {
+            flexible_guides(joint, &mut guides[2 * index..2 * index + 2], set);
+        }
         let held = system.assembly.connections.iter().zip(&system.holds.connections);
         for (joint, (connection, holds)) in others.iter_mut().zip(held) {
             update_connection(joint, connection, holds, &system.bodies, hubs);
@@ -303,17 +332,37 @@ fn centre_of_hub(hold: &Option<SectionAttachment>, body: &BodyKinematics) -> Vec
 }
 
 fn update_seat(joint: &mut SeatJoint, now: &SeatNow, off: Vec3, hubs: &[Hub]) {
-    let hub = joint.hub.map(|hub| &hubs[hub]);
+    let hub = joint.hubs[0].map(|hub| &hubs[hub]);
     joint.nodes.clear();
     joint.nodes.extend(now.touching.iter().map(|node| {
         let turning = cross(add(node.arm, off), node.normal);
         SeatRow {
             node: node.node,
             stiffness: node.stiffness,
-            lever: hub.map_or([0.0; 6], |hub| on_hub(hub, node.normal, turning)),
+            levers: [hub.map_or([0.0; 6], |hub| on_hub(hub, node.normal, turning)), [0.0; 6]],
             along: -node.along,
         }
     }));
+}
+
+/// Moves the normal contact of a flexible cage with its guiding race from the joints of a rigid one to its modes.
+fn flexible_guides(joint: &mut SeatJoint, guides: &mut [Joint], set: &BallSet) {
+    joint.nodes.clear();
+    let count = joint.shapes.len() / 2;
+    for (end, (guide, contact)) in guides.iter_mut().zip(&set.guides).enumerate() {
+        if guide.count == 0 {
+            continue;
+        }
+        let row = &mut guide.rows[0];
+        // A joint's lever is positive along the force on the race, which reduces the penetration.
+        let levers = row.levers.map(|lever| lever.map(|part| -part));
+        joint.nodes.push(SeatRow { node: end, stiffness: row.stiffness, levers, along: 1.0 });
+        row.stiffness = 0.0;
+        let shapes = &mut joint.shapes[end * count..(end + 1) * count];
+        for (to, force) in shapes.iter_mut().zip(&set.guide_modes[end]) {
+            *to = force / contact.normal_load;
+        }
+    }
 }
 
 fn update_guides(
@@ -335,7 +384,7 @@ fn update_guides(
             continue;
         }
         let (directions, slope) = friction(contact, &caged.contacts);
-        let stiffness = cage_stiffness(&caged.contacts.force, contact.penetration);
+        let stiffness = caged.stiffness(contact);
         for (row, direction) in directions.into_iter().enumerate() {
             let to = &mut guide.rows[row];
             to.stiffness = if row == 0 { stiffness } else { 0.0 };

@@ -2,7 +2,7 @@
 
 use crate::assembly::lists::Caged;
 use crate::assembly::state::{LANES, POSITION};
-use crate::ch2_housing::bearing::cage::{CageContact, CageContacts, cage_stiffness};
+use crate::ch2_housing::bearing::cage::{CageContact, CageContacts};
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
@@ -156,7 +156,7 @@ pub(crate) fn pockets(
         };
         to.rows = 3;
         let (directions, slope) = friction(contact, &caged.contacts);
-        to.stiffness[lane] = cage_stiffness(&caged.contacts.force, contact.penetration);
+        to.stiffness[lane] = caged.stiffness(contact);
         to.slope[0][lane] = slope[0];
         to.slope[3][lane] = slope[1];
         let arm_on_ball = sub(contact.point, layout.ball_vector(state, POSITION, ball));

@@ -74,7 +74,10 @@ fn coordinate(assembly: &Assembly, entry: usize) -> Option<(String, f64)> {
         let name = &assembly.bodies[shaft.body].name;
         (at + shaft.amplitudes(), shaft.amplitudes(), name)
     });
-    let mut modes = solids.chain(shafts);
+    let floating = assembly.floating.iter().zip(places.floating(assembly)).map(|(solid, at)| {
+        (at + solid.count(), solid.count(), &assembly.bodies[solid.body].name)
+    });
+    let mut modes = solids.chain(shafts).chain(floating);
     let (first, _, name) = modes.find(|(at, count, _)| (*at..at + count).contains(&entry))?;
     Some((format!("mode {} of {name}", entry - first + 1), 1.0))
 }
@@ -195,6 +198,11 @@ fn directions(system: &System) -> Vec<Direction> {
     }
     for (shaft, at) in system.assembly.shafts.iter().zip(&system.shafts) {
         let half = shaft.amplitudes();
+        directions.extend((0..half).map(|k| Direction::Position(at + k)));
+        directions.extend((half..2 * half).map(|k| Direction::Rate(at + k)));
+    }
+    for (solid, at) in system.assembly.floating.iter().zip(&system.floating) {
+        let half = solid.count();
         directions.extend((0..half).map(|k| Direction::Position(at + k)));
         directions.extend((half..2 * half).map(|k| Direction::Rate(at + k)));
     }

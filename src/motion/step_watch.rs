@@ -7,7 +7,7 @@
 
 use crate::assembly::lists::Bearing;
 use crate::assembly::plan::Stage;
-use crate::ch2_housing::bearing::cage::CageForce;
+use crate::ch2_housing::bearing::cage::CageContact;
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
 use crate::members::ball_set::BallSet;
@@ -106,20 +106,17 @@ fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness 
         }
     }
     let Some(cage) = &bearing.cage else { return most };
-    let of_cage = |load: f64, depth: f64, moved: f64| Stiffness {
-        oscillation: moved
-            * match cage.contacts.force {
-                CageForce::Penalty { stiffness } => stiffness,
-                CageForce::Hertz { stiffness } => 1.5 * stiffness * depth.max(0.0).sqrt(),
-            },
-        decay: cage.contacts.friction * load / cage.contacts.regularisation_speed * moved,
+    let of_cage = |contact: &CageContact, moved: f64| Stiffness {
+        oscillation: moved * cage.stiffness(contact),
+        decay: cage.contacts.friction * contact.normal_load / cage.contacts.regularisation_speed
+            * moved,
     };
     let per_cage =
         system.assembly.bodies[cage.body].inertia().map_or(0.0, |inertia| 1.0 / inertia.mass);
     let pockets = set.pockets.iter().map(|contact| (contact, at_surface + per_cage));
     let guides = set.guides.iter().map(|contact| (contact, per_cage));
     for (contact, moved) in pockets.chain(guides).filter(|(contact, _)| contact.normal_load > 0.0) {
-        most = most.largest(&of_cage(contact.normal_load, contact.penetration, moved));
+        most = most.largest(&of_cage(contact, moved));
     }
     most
 }

@@ -11,11 +11,12 @@ use crate::assembly::state::{
 };
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::kinematics::vec3::Vec3;
-use crate::members::ball_set::BallSet;
+use crate::members::ball_set::{BallSet, ContactForces};
 use crate::members::connection::{Connection, SpringForces};
 use crate::members::contacts::{Kernel, Want, Work};
 use crate::members::dents;
 use crate::members::flexible_shaft::Section;
+use crate::members::floating_solid::FloatingNow;
 use crate::members::housing_fit::SeatNow;
 use crate::members::reduced_solid::ModalEnergy;
 use crate::members::rigid_body;
@@ -39,6 +40,9 @@ pub struct System {
     pub connections: Vec<usize>,
     /// First entry of each flexible shaft in the state, and the attachments on it.
     pub shafts: Vec<usize>,
+    /// First entry of each floating solid in the state, and its working memory.
+    pub floating: Vec<usize>,
+    pub floating_now: Vec<FloatingNow>,
     pub holds: SectionAttachments,
     /// Kinematics of each body as last evaluated.
     pub bodies: Vec<BodyKinematics>,
@@ -79,6 +83,8 @@ impl System {
             solids: places.solids(&assembly),
             connections: places.connections(&assembly),
             shafts: places.shafts(&assembly),
+            floating: places.floating(&assembly),
+            floating_now: assembly.floating.iter().map(FloatingNow::new).collect(),
             holds: SectionAttachments::new(&assembly, &bodies),
             places,
             sets,
@@ -156,14 +162,24 @@ impl System {
         let mut ledger = [0.0; LEDGER];
         self.loads.fill(Wrench::default());
         self.shaft_rates(t, state, rates, &mut ledger);
-        let Assembly { bearings, shafts, .. } = &self.assembly;
+        for now in &mut self.floating_now {
+            now.forces.fill(0.0);
+        }
+        let Assembly { bearings, shafts, floating, .. } = &self.assembly;
         let bent = (shafts.as_slice(), self.shafts.as_slice(), state);
         let holds = &self.holds;
         for (((set, bearing), own), holds) in
             self.sets.iter_mut().zip(bearings).zip(&mut self.ran.bearings).zip(&holds.bearings)
         {
             let (driver, work) = (self.driver, &mut self.work);
-            set.evaluate(bearing, gravity, driver, want, state, rates, &mut ledger, work, own);
+            let caged = bearing.cage.as_ref().and_then(|cage| cage.nodes.as_ref());
+            let modes = caged.map(|nodes| {
+                let (solid, at) = (&floating[nodes.floating], self.floating[nodes.floating]);
+                let entries = &state[at..at + 2 * solid.count()];
+                (solid.split(entries), &mut self.floating_now[nodes.floating].forces[..])
+            });
+            let forces = ContactForces { rates, ledger: &mut ledger, modes };
+            set.evaluate(bearing, gravity, driver, want, state, forces, work, own);
             self.ran.whole.add(Stage::Gravity, own.take(Stage::Gravity));
             for (side, mount) in bearing.mounts.iter().enumerate() {
                 let attached = (&set.races[side], &self.bodies[mount.body]);
@@ -330,6 +346,12 @@ impl System {
     pub fn acceleration_of(&self, rates: &[f64], body: usize) -> [Vec3; 2] {
         let at = self.places.body(body);
         [VELOCITY, SPIN].map(|part| [0, 1, 2].map(|i| rates[at + part + i]))
+    }
+
+    /// Entries of a floating solid.
+    pub fn deformed<'s>(&self, state: &'s [f64], solid: usize) -> &'s [f64] {
+        let at = self.floating[solid];
+        &state[at..at + 2 * self.assembly.floating[solid].count()]
     }
 
     /// Energy of a reduced solid in a state.

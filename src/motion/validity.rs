@@ -106,6 +106,11 @@ impl Simulation {
                 return Err(self.not_finite(system.assembly.bodies[shaft.body].name.clone()));
             }
         }
+        for (index, solid) in system.assembly.floating.iter().enumerate() {
+            if !system.deformed(&self.state, index).iter().all(|v| v.is_finite()) {
+                return Err(self.not_finite(system.assembly.bodies[solid.body].name.clone()));
+            }
+        }
         self.watch_bending()?;
         self.watch_springs()?;
         for (index, seat) in system.assembly.seats.iter().enumerate() {

@@ -11,6 +11,7 @@ pub mod equilibrium;
 pub mod equilibrium_error;
 pub mod explicit;
 pub mod fixed_interface_modes;
+pub mod floating_reduction;
 pub mod free_modes;
 pub mod labels;
 pub mod load_patterns;

@@ -114,16 +114,44 @@ pub fn modes_over(
     unknowns: &Unknowns,
     options: &ModeOptions,
 ) -> Result<Modes, ModeError> {
-    let shift = shift(model);
-    let [mut shifted, masses] = matrices(model, unknowns, options);
-    shifted.add_scaled(-shift, &masses);
-    let factor = unknowns.factor(&shifted)?;
-    search(
-        model,
-        unknowns,
-        &Shifted { matrix: &shifted, masses: &masses, factor: &factor, shift },
-        options,
-    )
+    FreeFactor::new(model, unknowns, options.mass)?.modes(model, unknowns, options)
+}
+
+/// Factors of K − shift M of a solid that may be free, with `shift` < 0.
+pub(crate) struct FreeFactor {
+    matrix: SymmetricMatrix,
+    pub masses: SymmetricMatrix,
+    pub factor: Factor,
+    /// (rad/s)².
+    pub shift: f64,
+}
+
+impl FreeFactor {
+    /// # Errors
+    ///
+    /// A mesh in parts without stiffness; no memory.
+    pub fn new(
+        model: &SolidModel,
+        unknowns: &Unknowns,
+        mass: MassMatrix,
+    ) -> Result<FreeFactor, FactorError> {
+        let shift = shift(model);
+        let [mut matrix, masses] = matrices(model, unknowns, mass);
+        matrix.add_scaled(-shift, &masses);
+        let factor = unknowns.factor(&matrix)?;
+        Ok(FreeFactor { matrix, masses, factor, shift })
+    }
+
+    /// See [`modes_over`].
+    pub fn modes(
+        &self,
+        model: &SolidModel,
+        unknowns: &Unknowns,
+        options: &ModeOptions,
+    ) -> Result<Modes, ModeError> {
+        let FreeFactor { matrix, masses, factor, shift } = self;
+        search(model, unknowns, &Shifted { matrix, masses, factor, shift: *shift }, options)
+    }
 }
 
 /// The same for a solid with supports, with the factors of its undeformed stiffness.
@@ -137,7 +165,7 @@ pub fn modes_of_fixed(
     factor: &Factor,
     options: &ModeOptions,
 ) -> Result<Modes, ModeError> {
-    let [stiffness, masses] = matrices(model, unknowns, options);
+    let [stiffness, masses] = matrices(model, unknowns, options.mass);
     search(
         model,
         unknowns,
@@ -150,10 +178,10 @@ pub fn modes_of_fixed(
 fn matrices(
     model: &SolidModel,
     unknowns: &Unknowns,
-    options: &ModeOptions,
+    kind: MassMatrix,
 ) -> [SymmetricMatrix; 2] {
     let mut masses = mass_pattern(&model.problem, unknowns);
-    mass(model, unknowns, options.mass, &mut masses);
+    mass(model, unknowns, kind, &mut masses);
     let mut undeformed = pattern(&model.problem, unknowns);
     stiffness(model, unknowns, &vec![[0.0; 3]; model.mass.len()], &mut undeformed);
     [undeformed, masses]
@@ -267,7 +295,7 @@ fn shift(model: &SolidModel) -> f64 {
     -0.1 * problem.material.shear_modulus / (problem.density * size)
 }
 
-fn spread(unknowns: &Unknowns, vector: &[f64]) -> Vec<Vec3> {
+pub(crate) fn spread(unknowns: &Unknowns, vector: &[f64]) -> Vec<Vec3> {
     let at = |index: usize| if index == PRESCRIBED { 0.0 } else { vector[index] };
     unknowns.of.iter().map(|of| of.map(at)).collect()
 }

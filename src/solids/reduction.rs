@@ -255,9 +255,9 @@ fn natural(
 }
 
 /// A force on the solid and its static response beyond natural modes.
-struct Answer {
-    forces: Vec<(u32, Vec3)>,
-    shape: Vec<Vec3>,
+pub(crate) struct Answer {
+    pub forces: Vec<(u32, Vec3)>,
+    pub shape: Vec<Vec3>,
 }
 
 /// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`, with static corrections for `loads`, see
@@ -352,7 +352,7 @@ pub fn reduce(
 }
 
 /// Work of forces along a displacement, J.
-fn work(forces: &[(u32, Vec3)], displacement: &[Vec3]) -> f64 {
+pub(crate) fn work(forces: &[(u32, Vec3)], displacement: &[Vec3]) -> f64 {
     forces.iter().map(|(node, force)| dot(*force, displacement[*node as usize])).sum()
 }
 
@@ -375,7 +375,7 @@ fn own_loads(model: &SolidModel) -> Vec<(NodalForces, Option<Profile>)> {
 }
 
 /// Frequencies (rad/s, ascending) and modes of unit modal mass spanned by the responses.
-fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {
+pub(crate) fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {
     let size = answers.len();
     if size == 0 {
         return Vec::new();

@@ -12,7 +12,11 @@ use crate::solids::{tet4_blocks, tet10_blocks};
 
 /// Calls `visit` with element, undeformed volume and displacement gradient of every quadrature
 /// point.
-fn each_point(model: &SolidModel, displacement: &[Vec3], mut visit: impl FnMut(usize, f64, &Mat3)) {
+pub(crate) fn each_point(
+    model: &SolidModel,
+    displacement: &[Vec3],
+    mut visit: impl FnMut(usize, f64, &Mat3),
+) {
     let count = model.problem.elements.len();
     match &model.blocks {
         Blocks::Linear(blocks) => {

@@ -25,6 +25,8 @@ pub struct BodySteps {
     pub unbalance: bool,
     /// True if an unbalance is coupled with the spin of a body driven by a torque.
     pub unbalance_coupled: bool,
+    /// Index of its floating solid.
+    pub floating: Option<usize>,
 }
 
 /// Stages of an assembly.
@@ -65,6 +67,7 @@ impl Steps {
                 rotating_load: of(Stage::RotatingLoad),
                 unbalance: of(Stage::Unbalance),
                 unbalance_coupled: is_coupled(assembly, index),
+                floating: assembly.floating.iter().position(|solid| solid.body == index),
             }
         };
         let bodies = 0..assembly.bodies.len();

@@ -17,6 +17,7 @@ use bearing_dynamics::output::session::{
     Motion, Parts, RubberParts, RunRequest, SequenceParts, Session, SolidParts,
 };
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::scene::build::cage::BuiltCage;
 use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
 use bearing_dynamics::scene::build::motion::DynamicsError;
 use bearing_dynamics::scene::build::shaft::{ShaftElements, take_shafts};
@@ -42,6 +43,7 @@ pub(super) enum Prepared<'s> {
         housings: Vec<Housing>,
         bushings: Vec<BushingElements>,
         shafts: Vec<ShaftElements>,
+        cages: Vec<BuiltCage>,
         method: SolutionMethod,
     },
     Solid {
@@ -145,9 +147,19 @@ impl<'s> Prepared<'s> {
             SolutionMethod::Reduced(shapes) => shapes.assembly.clone(),
             _ => lists.assembly()?.clone(),
         });
+        let cages = scene.add_cage_nodes(&mut assembly)?;
         let bushings = take_bushings(scene, &mut assembly)?;
         let shafts = take_shafts(scene, &mut assembly)?;
-        Ok(Prepared::Bearings { lists, settings, assembly, housings, bushings, shafts, method })
+        Ok(Prepared::Bearings {
+            lists,
+            settings,
+            assembly,
+            housings,
+            bushings,
+            shafts,
+            cages,
+            method,
+        })
     }
 
     pub fn parts(&self, threads: usize) -> Fallible<Parts<'_>> {
@@ -339,6 +351,7 @@ impl<'s> Prepared<'s> {
                 bushings,
                 shafts,
                 method,
+                ..
             } => {
                 let scene = lists.scene;
                 let planned = match method {

@@ -13,6 +13,7 @@ use crate::members::shaft_modes::{FreeShaftError, Kept, RigidPart, free_shaft};
 use crate::members::unbalance::least_inertia;
 use crate::mesh::generate::{Bushing, BushingMesh};
 use crate::numeric::profile::Profile;
+use crate::scene::build::cage::{BuiltCage, CageMeshError, add_cage_nodes};
 use crate::scene::build::motion::{DynamicsError, dynamic_problem};
 use crate::scene::build::sensors::SceneSensor;
 use crate::scene::build::statics::still_lists;
@@ -313,6 +314,15 @@ impl AssemblyScene {
         let mut all = self.bodies_and_bearings()?;
         all.sensors = self.sensors.iter().map(|sensor| sensor.of(&all)).collect();
         Ok(all)
+    }
+
+    /// Replaces the contacts of cages that touch by their nodes in the solver's lists; equilibria do not need it.
+    ///
+    /// # Errors
+    ///
+    /// See [`CageMeshError`].
+    pub fn add_cage_nodes(&self, all: &mut Assembly) -> Result<Vec<BuiltCage>, CageMeshError> {
+        add_cage_nodes(all, self.bearings.iter().map(|placed| &placed.scene.dynamics))
     }
 
     /// Bodies, bearings and connections in the order of the scene: its bodies, then of each bearing the races that are

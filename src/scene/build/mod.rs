@@ -4,6 +4,7 @@ pub mod about;
 pub mod assembly;
 pub mod bore_shape;
 pub mod bushing;
+pub mod cage;
 pub mod deck_materials;
 pub mod excitations;
 pub mod housing;

@@ -4,10 +4,12 @@ use crate::assembly::loads::CageBody;
 use crate::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::mesh;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::dynamics::{check_inertia, millimetres};
-use crate::scene::resolve::resolved::{Cage, CageInRun, Dimensions};
+use crate::scene::resolve::resolved::{Cage, CageInRun, Dimensions, FlexibleCage};
 use crate::scene::text::value::Checked;
 use std::f64::consts::PI;
 
@@ -221,6 +223,103 @@ pub(crate) fn in_run(
     Ok(CageInRun::Body(CageBody { inertia: Inertia { mass, axial, transverse }, contacts }))
 }
 
+/// A cage that touches by the nodes of its mesh, if the scene asks for one.
+pub(crate) fn flexible(
+    reader: &mut Reader,
+    geometry: &BearingGeometry,
+    cage: &CageInRun,
+) -> Result<Option<FlexibleCage>, SceneError> {
+    let reduced = reader.choice_if_given("bearing.cage.body") == Some("reduced");
+    let at = reader.choice_if_given("bearing.cage.contact.at");
+    let path = "bearing.cage.contact.stiffness";
+    let per_area = match reader.document.value(path) {
+        Some(Checked::Either(2, stiffness)) => Some(*stiffness),
+        _ => None,
+    };
+    let by_nodes = reduced || at == Some("nodes");
+    if !by_nodes {
+        if per_area.is_some() {
+            let reason = "a stiffness per area is for a cage that touches by its nodes";
+            let advice = "write `at = \"nodes\"` in [bearing.cage.contact], or a stiffness in N/m";
+            return Err(reader.document.refused(path, reason, advice));
+        }
+        return Ok(None);
+    }
+    let refuse = |key: &str, reason: &str, advice: &str| {
+        Err(reader.document.refused(&format!("bearing.cage.{key}"), reason, advice))
+    };
+    if reduced && at == Some("surfaces") {
+        let advice = "leave it out, or write `body = \"rigid\"`";
+        return refuse("contact.at", "a reduced cage touches by the nodes of its mesh", advice);
+    }
+    if reader.choice_if_given("bearing.cage.contact.law") == Some("hertz") {
+        let advice = "write `law = \"penalty\"`, or leave it out";
+        return refuse("contact.law", "nodes touch by the penalty of (5.8)", advice);
+    }
+    if reader.choice_if_given("bearing.cage.pocket") == Some("spherical") {
+        let advice = "leave it out: the mesh has round pockets with radial axes";
+        return refuse("pocket", "the mesh of a cage has cylindrical pockets", advice);
+    }
+    let CageInRun::Body(CageBody { contacts, inertia }) = cage else { return Ok(None) };
+    let shape = mesh::generate::Cage {
+        pocket_count: geometry.ball_count,
+        pocket_radius: contacts.pocket_radius,
+        inner_radius: contacts.ring[0],
+        outer_radius: contacts.ring[1],
+        width: contacts.length,
+        relief: None,
+    };
+    let count = |reader: &Reader, key: &str, usual: usize| {
+        let given = reader.given_number(&format!("bearing.cage.mesh.{key}"));
+        given.map_or(usual, |count| count as usize)
+    };
+    let cells = mesh::generate::CageMesh {
+        quarter: count(reader, "quarter", 4),
+        bar: count(reader, "bar", 2),
+        wall: count(reader, "wall", 2),
+    };
+    let pockets = geometry.ball_count as f64
+        * pocket_volume(contacts.pocket_radius, contacts.ring[0], contacts.ring[1]);
+    let [inner, outer] = contacts.ring;
+    let volume = PI * (outer * outer - inner * inner) * contacts.length - pockets;
+    let mut given = |key: &str, usual: f64, shown: &str, reason: &str| {
+        let path = format!("bearing.cage.{key}");
+        reader.given_number(&path).unwrap_or_else(|| {
+            if reduced {
+                reader.note(&path, shown, reason);
+            }
+            usual
+        })
+    };
+    let youngs_modulus = given("youngs_modulus", 210e9, "210 GPa", "steel");
+    let poisson_ratio = given("poisson_ratio", 0.3, "0.3", "steel");
+    let kept = "six times the first natural frequency of the source's cage";
+    let modes_to = given("modes_to", 15e3, "15 kHz", kept);
+    let damping = given("damping", 0.0, "0 1/s", "the source states none for the cage");
+    let corrections = match reader.document.value("bearing.cage.corrections") {
+        Some(Checked::Boolean(given)) => *given,
+        _ => true,
+    };
+    let penalty = match (per_area, contacts.force) {
+        (Some(stiffness), _) => Penalty::PerArea(stiffness),
+        (None, CageForce::Penalty { stiffness } | CageForce::Hertz { stiffness }) => {
+            Penalty::PerNode(stiffness)
+        }
+    };
+    Ok(Some(FlexibleCage {
+        shape,
+        cells,
+        penalty,
+        youngs_modulus,
+        poisson_ratio,
+        // The mesh has the given mass.
+        density: inertia.mass / volume,
+        damping,
+        modes_to: if reduced { modes_to } else { 0.0 },
+        corrections: reduced && corrections,
+    }))
+}
+
 /// Volume of one round pocket with a radial axis in the ring: the integral of sqrt(R_o² - y²) - sqrt(R_i² - y²) over
 /// the pocket's circle.
 fn pocket_volume(pocket: f64, inner: f64, outer: f64) -> f64 {
@@ -267,6 +366,8 @@ fn force(reader: &mut Reader) -> Result<Option<CageForce>, SceneError> {
         (Some(Checked::Either(1, stiffness)), true) => {
             Ok(Some(CageForce::Hertz { stiffness: *stiffness }))
         }
+        // A stiffness per area is for nodes, see `flexible`.
+        (Some(Checked::Either(2, _)), false) => Ok(None),
         (Some(_), _) => {
             let (reason, example) = if hertz {
                 ("`hertz` takes a stiffness in N/m^1.5", "1e10 N/m^1.5")

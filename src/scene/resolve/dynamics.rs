@@ -46,6 +46,7 @@ pub(crate) fn dynamics(
     let shoulders = [of_inner?, of_outer?];
     let outer = outer_race(reader, parts)?;
     let cage = cage::in_run(reader, parts.geometry, parts.cage)?;
+    let flexible_cage = cage::flexible(reader, parts.geometry, &cage)?;
     let balls_meet = match &cage {
         CageInRun::Body(body) => gap_in_pockets(parts.geometry, &body.contacts).is_none(),
         CageInRun::LeftOut(_) => true,
@@ -58,6 +59,7 @@ pub(crate) fn dynamics(
         shoulders,
         outer,
         cage,
+        flexible_cage,
         rotating_load: rotating_load(reader, "inner_race")?,
         unbalance,
         traction: contact::traction(reader)?,

@@ -3,6 +3,8 @@
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::loads::{CageBody, DrivenBody, RotatingLoad};
 use crate::ch2_housing::bearing::cage::Guidance;
+use crate::ch2_housing::bore_contact::Penalty;
+use crate::mesh;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
@@ -99,6 +101,23 @@ pub enum CageInRun {
     LeftOut(String),
 }
 
+/// A cage that touches by the nodes of its mesh, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlexibleCage {
+    pub shape: mesh::generate::Cage,
+    pub cells: mesh::generate::CageMesh,
+    pub penalty: Penalty,
+    pub youngs_modulus: f64,
+    pub poisson_ratio: f64,
+    pub density: f64,
+    /// 1/s.
+    pub damping: f64,
+    /// Hz; zero for a rigid cage.
+    pub modes_to: f64,
+    /// Static correction modes for its contacts.
+    pub corrections: bool,
+}
+
 /// Length, steps and output of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSettings {
@@ -124,6 +143,8 @@ pub struct Dynamics {
     /// `None`: the outer race is fixed.
     pub outer: Option<DrivenBody>,
     pub cage: CageInRun,
+    /// `None`: rigid, with contacts of its geometric surfaces.
+    pub flexible_cage: Option<FlexibleCage>,
     pub rotating_load: Option<RotatingLoad>,
     /// kg·m.
     pub unbalance: f64,

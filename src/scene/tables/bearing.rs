@@ -20,7 +20,7 @@ const CLEARANCE: Kind = Kind::Quantity(Length, closed(-10_000.0, 10_000.0, "um")
 const CONFORMITY: Kind = Kind::Number(open(0.5, 0.6, ""));
 const OSCULATION: Kind = Kind::Number(open(0.83, 1.0, ""));
 pub(crate) const MODULUS: Kind = Kind::Quantity(Stress, closed(0.5, 1000.0, "GPa"));
-const POISSON: Kind =
+pub(crate) const POISSON: Kind =
     Kind::Number(Range { low: 0.0, high: 0.5, low_included: true, high_included: false, unit: "" });
 pub(crate) const DENSITY: Kind = Kind::Quantity(Density, closed(500.0, 25_000.0, "kg/m^3"));
 pub(crate) const FORCE: Kind = Kind::Profile(Force, closed(-1e9, 1e9, "N"));
@@ -54,9 +54,9 @@ pub(crate) const TILT_HINT: &str = "bearings tilt by minutes of arc; check the u
 pub(crate) const LOAD_HINT: &str = "check the unit";
 pub(crate) const RADIUS_HINT: &str =
     "a positive radius, measured from the bearing axis; check the unit";
-const MODULUS_HINT: &str = "steel has 210 GPa; check the unit";
+pub(crate) const MODULUS_HINT: &str = "steel has 210 GPa; check the unit";
 pub(crate) const DENSITY_HINT: &str = "steel has 7850 kg/m^3; check the unit";
-const POISSON_HINT: &str = "steel has 0.3; 0.5 would be incompressible";
+pub(crate) const POISSON_HINT: &str = "steel has 0.3; 0.5 would be incompressible";
 const CONFORMITY_HINT: &str = "conformity is groove radius / ball diameter, usually 0.505 to 0.54";
 const OSCULATION_HINT: &str =
     "osculation is ball diameter / (2 groove radius), usually 0.92 to 0.99";

@@ -2,13 +2,14 @@
 
 use crate::assembly::channels::ChannelGroup;
 use crate::scene::tables::bearing::{
-    DENSITY, DENSITY_HINT, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, RADIUS, RADIUS_HINT, SPIN,
+    DENSITY, DENSITY_HINT, MODULUS, MODULUS_HINT, POISSON, POISSON_HINT, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, RADIUS, RADIUS_HINT, SPIN,
     STEEL_DENSITY, TILT, TILT_HINT, quantity,
 };
 use crate::scene::tables::keys::{Key, Kind, Need, Table, above, closed, open, table};
 use crate::scene::text::units::Dimension;
 use crate::scene::text::units::Dimension::{
-    Angle, HertzStiffness, InverseSpeed, Mass, Speed, Stiffness, Time,
+    Angle, Frequency, HertzStiffness, InverseSpeed, Mass, Rate, Speed, Stiffness, StiffnessPerArea,
+    Time,
 };
 use Need::{Default, Depends, Optional};
 
@@ -53,7 +54,12 @@ const CURVE_DECAY: Kind = Kind::Either(&[
 const CAGE_STIFFNESS: Kind = Kind::Either(&[
     Kind::Quantity(Stiffness, above(0.0, 1e15, "N/m")),
     Kind::Quantity(HertzStiffness, above(0.0, 1e18, "N/m^1.5")),
+    Kind::Quantity(StiffnessPerArea, above(0.0, 1e21, "N/m^3")),
 ]);
+pub const CAGE_BODIES: &[&str] = &["rigid", "reduced"];
+pub const CAGE_CONTACTS: &[&str] = &["surfaces", "nodes"];
+const OF_NODES: Need = Depends("4, 2 and 2 if the cage touches by its nodes");
+const STEEL_CAGE: Need = Depends("steel: 210 GPa and 0.3");
 
 const FREE: Need = Depends("neither key: the coordinate is free and unloaded");
 const NO_SPRING: Need = Default { value: "0 N/m", reason: "no spring" };
@@ -97,8 +103,28 @@ pub(crate) const KEYS: &[Key] = &[
         "Law of the normal force in the cage's contacts: linear in the penetration, or its power 3/2."),
     Key::new("bearing.cage.contact.stiffness", CAGE_STIFFNESS,
         Depends("`penalty`: 2e8 N/m; `hertz`: required"),
-        "Stiffness of the cage's contacts: N/m for `penalty`, N/m^1.5 for `hertz`.")
+        "Stiffness of the cage's contacts: N/m for `penalty` (of each node, if the cage touches by its nodes), N/m^1.5 for `hertz`. N/m^3 is a stiffness per area for nodes, so that the force does not depend on the mesh.")
         .hint("the source has 2e8 N/m (5.8)").example_of("\"2e8 N/m\""),
+    Key::new("bearing.cage.body", Kind::Choice(CAGE_BODIES),
+        Default { value: "rigid", reason: "a flexible cage costs several times as much" },
+        "Cage as a rigid body, or as a flexible one that is `reduced` to modes in a rotating frame. A reduced cage touches by the nodes of its mesh."),
+    Key::new("bearing.cage.contact.at", Kind::Choice(CAGE_CONTACTS),
+        Depends("`surfaces` of a rigid cage, `nodes` of a reduced one"),
+        "Contact points of the cage: its geometric `surfaces`, or the `nodes` of its mesh (5.3.2). Nodes of a pocket touch their ball, nodes of the rails outside the pockets' width touch the land of the guiding race."),
+    Key::new("bearing.cage.mesh.quarter", Kind::Integer { low: 2, high: 100 }, OF_NODES, "Cells along a quarter of a pocket's edge.").example_of("4"),
+    Key::new("bearing.cage.mesh.bar", Kind::Integer { low: 1, high: 100 }, OF_NODES, "Cells from a pocket's edge to the middle of the bar.").example_of("2"),
+    Key::new("bearing.cage.mesh.wall", Kind::Integer { low: 1, high: 100 }, OF_NODES, "Cells through the wall.").example_of("2"),
+    quantity("bearing.cage.youngs_modulus", MODULUS, STEEL_CAGE, "Young's modulus of a reduced cage.").hint(MODULUS_HINT),
+    Key::new("bearing.cage.poisson_ratio", POISSON, STEEL_CAGE, "Poisson's ratio of a reduced cage.").hint(POISSON_HINT),
+    quantity("bearing.cage.modes_to", Kind::Quantity(Frequency, above(0.0, 1e6, "Hz")),
+        Depends("15 kHz for a reduced cage"),
+        "Highest natural frequency of the free cage that is kept. Static correction modes are added.").example_of("15 kHz"),
+    Key::new("bearing.cage.corrections", Kind::Boolean,
+        Depends("true for a reduced cage"),
+        "True to add static correction modes for both walls of each pocket and for both rails next to it.").example_of("true"),
+    quantity("bearing.cage.damping", Kind::Quantity(Rate, closed(0.0, 1e9, "1/s")),
+        Depends("0 1/s for a reduced cage"),
+        "Mass-proportional damping of the deformation of a reduced cage.").hint("the source has 77 and 100 1/s for housings and shafts").example_of("77 1/s"),
     Key::new("bearing.cage.friction", FRICTION, Default { value: "0.1", reason: "section 5.3.2" },
         "Friction coefficient of the cage's contacts.").hint(FRICTION_HINT).example_of("0.1"),
     quantity("bearing.cage.regularisation_speed", SLIP,
@@ -224,6 +250,7 @@ const RACE_INERTIA: &str =
 #[rustfmt::skip]
 pub(crate) const TABLES: &[Table] = &[
     table("bearing.cage.contact", "Normal force of the cage's contacts.", "contact = { law = \"penalty\", stiffness = \"2e8 N/m\" }"),
+    table("bearing.cage.mesh", "Mesh of a cage that touches by its nodes, generated in ten-node elements from the cage's dimensions.", "mesh = { quarter = 4, bar = 2, wall = 2 }"),
     table("bearing.cage.inertia", "Moments of inertia of the cage.", "inertia = { axial = \"7e-5 kg m^2\", transverse = \"4e-5 kg m^2\" }"),
     table("inner_race.inertia", "Mass and moments of inertia of the inner race.", RACE_INERTIA),
     table("inner_race.rotating_load", "A rotating radial force.",
