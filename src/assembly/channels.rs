@@ -5,12 +5,14 @@
 pub enum ChannelGroup {
     /// Position, tilts, velocity and speed of the inner race, and of the outer race if it moves.
     Races,
-    /// Position, speed and angle of the cage, and its load on the guiding race.
+    /// Position, speed and angle of the cage, its load on the guiding race, and the extremes of a flexible cage's radius.
     Cage,
     /// Angle and speed of each ball around the bearing; mean contact angle on each race.
     Orbits,
     /// Normal load of each ball on both races.
     Loads,
+    /// Change of a flexible cage's outer radius around it, in its own axes.
+    CageRadius,
     /// Load of each ball in its pocket.
     Pockets,
     /// Slip at the middle of each contact and spin about its normal.
@@ -24,11 +26,12 @@ pub enum ChannelGroup {
 }
 
 impl ChannelGroup {
-    pub const ALL: [ChannelGroup; 9] = [
+    pub const ALL: [ChannelGroup; 10] = [
         ChannelGroup::Races,
         ChannelGroup::Cage,
         ChannelGroup::Orbits,
         ChannelGroup::Loads,
+        ChannelGroup::CageRadius,
         ChannelGroup::Pockets,
         ChannelGroup::Slip,
         ChannelGroup::Forces,
@@ -36,7 +39,7 @@ impl ChannelGroup {
         ChannelGroup::Energy,
     ];
 
-    /// All but slip, with six columns a ball, and moments.
+    /// All but slip, with six columns a ball, moments, and the cage's radius.
     pub const DEFAULT: [ChannelGroup; 7] = [
         ChannelGroup::Races,
         ChannelGroup::Cage,
@@ -54,6 +57,7 @@ impl ChannelGroup {
             ChannelGroup::Cage => "cage",
             ChannelGroup::Orbits => "orbits",
             ChannelGroup::Loads => "loads",
+            ChannelGroup::CageRadius => "cage-radius",
             ChannelGroup::Pockets => "pockets",
             ChannelGroup::Slip => "slip",
             ChannelGroup::Forces => "forces",

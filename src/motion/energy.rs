@@ -22,9 +22,11 @@ pub struct Energy {
     pub foundation: f64,
     /// Stored in contacts between balls.
     pub ball_contact: f64,
-    /// Motion and strain of reduced and floating solids.
+    /// Motion and strain of reduced solids.
     pub solid_kinetic: f64,
     pub solid_strain: f64,
+    /// Strain of flexible cages; their motion is in `kinetic`.
+    pub cage_strain: f64,
     /// Bending of shafts.
     pub bending_kinetic: f64,
     pub bending_strain: f64,
@@ -42,6 +44,7 @@ impl Energy {
             + self.ball_contact
             + (self.solid_kinetic + self.solid_strain + self.seat)
             + (self.bending_kinetic + self.bending_strain)
+            + self.cage_strain
     }
 }
 
@@ -73,12 +76,6 @@ impl System {
             let spin = if floats(index) { [0.0; 3] } else { now.state.spin };
             add_body(inertia, now.motion.axis, &[now.state.position, now.state.velocity, spin]);
         }
-        for (index, solid) in assembly.floating.iter().enumerate() {
-            let entries = self.deformed(state, index);
-            let [kinetic, strain] = solid.energy(&self.bodies[solid.body], entries);
-            energy.solid_kinetic += kinetic;
-            energy.solid_strain += strain;
-        }
         for (set, bearing) in self.sets.iter().zip(&assembly.bearings) {
             if let Some(cage) = &bearing.cage {
                 if cage.nodes.is_some() {
@@ -101,6 +98,12 @@ impl System {
                     energy.ball_contact += strain_energy(law.stiffness, meeting.overlap);
                 }
             }
+        }
+        for (index, solid) in assembly.floating.iter().enumerate() {
+            let entries = self.deformed(state, index);
+            let [kinetic, strain] = solid.energy(&self.bodies[solid.body], entries);
+            energy.kinetic += kinetic;
+            energy.cage_strain += strain;
         }
         for (body, now) in assembly.bodies.iter().zip(&self.bodies) {
             let Some(driven) = body.driven() else { continue };

@@ -32,6 +32,20 @@ pub struct FloatingReduction {
     pub first_left_out: f64,
 }
 
+impl FloatingReduction {
+    /// Displacements of all nodes in axes of the frame for these amplitudes (m), m.
+    pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
+        let nodes = self.shapes.first().map_or(0, Vec::len);
+        let mut sum = vec![[0.0; 3]; nodes];
+        for (shape, gone) in self.shapes.iter().zip(gone) {
+            for (sum, here) in sum.iter_mut().zip(shape) {
+                *sum = add_scaled(*sum, *gone, *here);
+            }
+        }
+        sum
+    }
+}
+
 /// Largest number of natural modes.
 const MOST: usize = 200;
 /// Residual of natural modes: their frequencies are accurate to its square.

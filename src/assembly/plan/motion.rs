@@ -62,6 +62,14 @@ pub fn evaluation(assembly: &Assembly, cage_left_out: &[Option<&str>]) -> Vec<It
     items.push(springs(assembly));
     items.extend(reduced_solids(assembly));
     items.extend(assembly.shafts.iter().flat_map(|shaft| bending(shaft, assembly)));
+    items.extend(assembly.floating.iter().map(|solid| {
+        let why = match solid.count() {
+            0 => "rigid, with the inertia of its mesh".into(),
+            count => format!("{count} modes in a frame that rotates with it"),
+        };
+        let item = Item::does(Stage::Reduced, Subject::Body(solid.body), why).costing(1);
+        item.named(Some(bare(&assembly.bodies[solid.body].name)))
+    }));
     items.push(gravity(assembly));
     let bodies = || assembly.bodies.iter().enumerate();
     items.extend(bodies().filter_map(|(index, body)| motion(body, Subject::Body(index))));
@@ -301,6 +309,14 @@ fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item
         return vec![Item::skips(Stage::Pockets, subject, why)];
     };
     let balls = bearing.geometry.ball_count;
+    let land = match cage.contacts.guidance {
+        Guidance::InnerRace => "inner",
+        _ => "outer",
+    };
+    let by_nodes = cage.nodes.as_ref().map(|nodes| {
+        let count = nodes.land.places.len();
+        format!("on the {land} race, {count} nodes of the rails; only sectors near the land are searched")
+    });
     let (guided, why) = match cage.contacts.guidance {
         Guidance::OuterRace => (true, "on the outer race, at both ends of the cage"),
         Guidance::InnerRace => (true, "on the inner race, at both ends of the cage"),
@@ -310,8 +326,15 @@ fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item
         ),
         Guidance::Balls => (false, "the balls guide it: no test with a race"),
     };
+    let why = by_nodes.filter(|_| guided).unwrap_or_else(|| why.to_string());
     let guide = Item { cost: guided.then_some(2), ..Item::new(Stage::Guide, subject, guided, why) };
-    let why = format!("{balls} pocket tests");
+    let why = match &cage.nodes {
+        None => format!("{balls} pocket tests"),
+        Some(nodes) => {
+            let count = nodes.pockets.first().map_or(0, |pocket| pocket.group.places.len());
+            format!("{balls} pockets of {count} nodes; the nodes are tested only when the ball is near the wall")
+        }
+    };
     vec![Item::does(Stage::Pockets, subject, why).costing(balls as u64), guide]
 }
 
@@ -356,10 +379,13 @@ pub(crate) fn stands_on_ground(body: &DrivenBody) -> bool {
 /// Recording of a group of channels.
 pub fn channel_group(assembly: &Assembly, asked: &[ChannelGroup], group: ChannelGroup) -> Item {
     let needs_cage = matches!(group, ChannelGroup::Cage | ChannelGroup::Pockets);
+    let flexes = assembly.floating.iter().any(|solid| !solid.gauges.is_empty());
     let (does, why) = if group == ChannelGroup::Energy {
         (true, "the ledger is always computed")
     } else if !asked.contains(&group) {
         (false, "not requested: not computed")
+    } else if group == ChannelGroup::CageRadius && !flexes {
+        (false, "there is no flexible cage")
     } else if needs_cage && assembly.bearings.iter().all(|bearing| bearing.cage.is_none()) {
         (false, "there is no cage")
     } else {

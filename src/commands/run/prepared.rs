@@ -270,6 +270,11 @@ impl<'s> Prepared<'s> {
         {
             return Some(Fields { displacement, velocity: Some(velocity) });
         }
+        if let Prepared::Bearings { housings, shafts, cages, .. } = self
+            && let Some(cage) = solid.checked_sub(housings.len() + shafts.len())
+        {
+            return cages.get(cage).and_then(|cage| cage_fields(cage, &session.motion));
+        }
         let displacement = session.displacement(solid);
         let velocity = match &mut session.motion {
             Motion::Solid(moving) => Some(moving.solid.velocity()),
@@ -289,12 +294,17 @@ impl<'s> Prepared<'s> {
             let (mesh, model) = (&built.mesh, Some(&setup.model));
             SolidOf { name: name.as_deref(), mesh, model, has_bore: true }
         }
+        fn of_cage(BuiltCage { name, mesh, model, .. }: &BuiltCage) -> SolidOf<'_> {
+            SolidOf { name: Some(name), mesh, model: Some(model), has_bore: false }
+        }
         fn of_shaft(ShaftElements { name, mesh, part, .. }: &ShaftElements) -> SolidOf<'_> {
             SolidOf { name: Some(name), mesh, model: Some(&part.model), has_bore: false }
         }
         match self {
-            Prepared::Bearings { housings, shafts, .. } => {
-                housings.iter().map(of_housing).chain(shafts.iter().map(of_shaft)).collect()
+            Prepared::Bearings { housings, shafts, cages, .. } => {
+                let flexible = cages.iter().filter(|cage| !cage.reduction.shapes.is_empty());
+                let all = housings.iter().map(of_housing).chain(shafts.iter().map(of_shaft));
+                all.chain(flexible.map(of_cage)).collect()
             }
             Prepared::Solid { mesh, .. } => {
                 vec![SolidOf { name: None, mesh: &mesh.built.mesh, model: None, has_bore: false }]
@@ -409,6 +419,17 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
         fields_interval: settings.fields_interval,
         channels,
     }
+}
+
+/// Deformation of a cage in its own axes, without its rigid motion.
+fn cage_fields(cage: &BuiltCage, motion: &Motion) -> Option<Fields> {
+    let Motion::Bearing(simulation) = motion else { return None };
+    let system = &simulation.system;
+    let nodes = system.assembly.bearings[cage.bearing].cage.as_ref()?.nodes.as_ref()?;
+    let solid = &system.assembly.floating[nodes.floating];
+    let modes = solid.split(system.deformed(&simulation.state, nodes.floating));
+    let [displacement, velocity] = modes.map(|of| cage.reduction.displacement(of));
+    (!displacement.is_empty()).then_some(Fields { displacement, velocity: Some(velocity) })
 }
 
 /// [`request`] with the integrator that the plan chooses, if the scene gives none.

@@ -199,7 +199,7 @@ fn cycles_between_rows(scene: &SolidScene, session: &Session) -> Option<Warning>
     aliased(&what, frequency, session.clock.row_interval())
 }
 
-/// Fields of the last state of housings and shafts in elements, tables of bore nodes, and the effect of inertia.
+/// Fields of the last state of housings, shafts in elements and flexible cages, tables of bore nodes, and the effect of inertia.
 fn housing_results(
     folder: &Path,
     prepared: &Prepared,
@@ -207,11 +207,11 @@ fn housing_results(
     table: &RunTable,
     extras: &mut Extras,
 ) -> Fallible<()> {
-    let Prepared::Bearings { lists, housings, shafts, method, .. } = prepared else {
+    let Prepared::Bearings { lists, housings, shafts, cages, method, .. } = prepared else {
         return Ok(());
     };
     let scene = lists.scene;
-    if housings.is_empty() && shafts.is_empty() {
+    if housings.is_empty() && shafts.is_empty() && cages.is_empty() {
         return Ok(());
     }
     // After an early stop of explicit steps the state at the last row is not available.

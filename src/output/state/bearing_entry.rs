@@ -33,6 +33,9 @@ pub struct BearingEntry {
     /// Initial energies of shaft bending: kinetic, strain, J.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub first_energy_of_bending: Option<[f64; 2]>,
+    /// Initial strain energy of flexible cages, J.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub first_energy_of_cages: Option<f64>,
     pub largest_contact_energy: f64,
     /// See [`ContactTurnover`]: sum and last, J.
     pub contact_turnover: [f64; 2],
@@ -101,6 +104,7 @@ impl BearingEntry {
                 .filter(|of| *of != [0.0; 3]),
             first_energy_of_bending: Some([energy.bending_kinetic, energy.bending_strain])
                 .filter(|of| *of != [0.0; 2]),
+            first_energy_of_cages: Some(energy.cage_strain).filter(|of| *of != 0.0),
             largest_contact_energy: balance.largest_contact,
             contact_turnover: [balance.turnover.sum, balance.turnover.last],
             ledger: (
@@ -125,6 +129,7 @@ impl BearingEntry {
             energy.chain(self.first_energy).chain(self.contact_turnover).chain(self.ledger.0);
         let energy = energy.chain(self.first_energy_of_solids.into_iter().flatten());
         let energy = energy.chain(self.first_energy_of_bending.into_iter().flatten());
+        let energy = energy.chain(self.first_energy_of_cages);
         vec![
             ("an extreme", self.extremes.clone()),
             ("a size of the error control", self.control.into_iter().flatten().collect()),
@@ -160,6 +165,7 @@ impl BearingEntry {
         let [kinetic, contact, cage_contact, gravity, foundation, ball_contact] = self.first_energy;
         let [solid_kinetic, solid_strain, seat] = self.first_energy_of_solids.unwrap_or_default();
         let [bending_kinetic, bending_strain] = self.first_energy_of_bending.unwrap_or_default();
+        let cage_strain = self.first_energy_of_cages.unwrap_or_default();
         let mut work = Work::default();
         for (count, kept) in work.counts().into_iter().zip(self.work) {
             *count = kept;
@@ -193,6 +199,7 @@ impl BearingEntry {
                     bending_kinetic,
                     bending_strain,
                     seat,
+                    cage_strain,
                 },
                 before: 0.0,
                 largest_contact: self.largest_contact_energy,

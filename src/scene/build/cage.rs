@@ -36,7 +36,10 @@ pub enum CageMeshError {
 pub struct BuiltCage {
     /// Index in the assembly's bearings.
     pub bearing: usize,
+    /// Name of its files: "cage", with the bearing's name in front.
+    pub name: String,
     pub mesh: TetMesh,
+    pub model: SolidModel,
     pub reduction: FloatingReduction,
 }
 
@@ -130,9 +133,10 @@ fn add(
     let inertia =
         Inertia { mass: reduction.frame.mass, axial: xx, transverse: 0.5 * (yy + zz) };
     all.bodies[body].mobility = Mobility::Free(inertia);
-    let gauges = gauges(&mesh, &surfaces.outer, &reduction);
+    let gauges = if modes > 0 { gauges(&mesh, &surfaces.outer, &reduction) } else { Vec::new() };
     all.floating.push(FloatingSolid { body, frame: reduction.frame.clone(), gauges });
-    Ok(BuiltCage { bearing, mesh, reduction })
+    let name = format!("{}cage", all.bearings[bearing].prefix());
+    Ok(BuiltCage { bearing, name, mesh, model, reduction })
 }
 
 /// Rotates a mesh about X, so that its first pocket is at the azimuth of ball 1.

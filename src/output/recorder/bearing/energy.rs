@@ -20,6 +20,7 @@ pub(super) enum Term {
     BendingStrain,
     BendingKinetic,
     Seat,
+    CageStrain,
     Work(Ledger),
     Residual,
 }
@@ -39,6 +40,7 @@ pub(super) fn terms(assembly: &Assembly) -> Vec<Term> {
     // The damping of solids is included in the foundation work.
     let solids = !assembly.solids.is_empty();
     let bends = !assembly.shafts.is_empty();
+    let flexes = assembly.floating.iter().any(|solid| solid.count() > 0);
     let terms = [
         (Term::Kinetic, true),
         (Term::Contact, true),
@@ -51,10 +53,11 @@ pub(super) fn terms(assembly: &Assembly) -> Vec<Term> {
         (Term::BendingStrain, bends),
         (Term::BendingKinetic, bends),
         (Term::Seat, solids),
+        (Term::CageStrain, flexes),
         (Term::Work(Ledger::Traction), traction),
         (Term::Work(Ledger::ContactDamping), damping),
         (Term::Work(Ledger::CageFriction), cage),
-        (Term::Work(Ledger::Foundation), on_foundation || solids || bends),
+        (Term::Work(Ledger::Foundation), on_foundation || solids || bends || flexes),
         (Term::Work(Ledger::BallFriction), meet),
         (Term::Work(Ledger::Drives), true),
         (Term::Residual, true),
@@ -75,6 +78,7 @@ pub(super) fn term_name(term: Term) -> &'static str {
         Term::BendingStrain => "energy_bending_strain",
         Term::BendingKinetic => "energy_bending_kinetic",
         Term::Seat => "energy_seat",
+        Term::CageStrain => "energy_cage_strain",
         Term::Work(Ledger::Traction) => "work_traction",
         Term::Work(Ledger::ContactDamping) => "work_contact_damping",
         Term::Work(Ledger::CageFriction) => "work_cage_friction",
@@ -98,6 +102,7 @@ pub(super) fn energy_term(term: Term, snapshot: &Snapshot) -> f64 {
         Term::BendingStrain => snapshot.energy.bending_strain,
         Term::BendingKinetic => snapshot.energy.bending_kinetic,
         Term::Seat => snapshot.energy.seat,
+        Term::CageStrain => snapshot.energy.cage_strain,
         Term::Work(entry) => snapshot.ledger[entry as usize],
         Term::Residual => snapshot.residual,
     }

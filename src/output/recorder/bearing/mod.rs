@@ -15,6 +15,7 @@ use crate::ch2_housing::bearing::slices::{Motion, Sliding, sliding};
 use crate::kinematics::vec3::{dot, scale, sub};
 use crate::members::ball_set::BallSet;
 use crate::members::flexible_shaft::ElasticShaft;
+use crate::members::floating_solid::RadiusGauge;
 use crate::members::rigid_body::{BodyKinematics, Wrench, tilts_of};
 use crate::members::sensor::Sensor;
 use crate::motion::simulation::{Simulation, Snapshot};
@@ -128,6 +129,14 @@ impl Recorder {
             ChannelGroup::Cage => {
                 let place = simulation.system.assembly.place_of(bearing);
                 self.cage(set, bearing, place, before, row);
+                if let Some(radii) = radii(simulation, bearing) {
+                    let fold = |from: f64, of: fn(f64, f64) -> f64| radii.clone().fold(from, of);
+                    let extremes = [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)];
+                    self.values.extend(extremes);
+                }
+            }
+            ChannelGroup::CageRadius => {
+                self.values.extend(radii(simulation, bearing).into_iter().flatten());
             }
             ChannelGroup::Orbits => self.orbits(simulation, set, bearing, before, row),
             ChannelGroup::Loads => {
@@ -260,6 +269,25 @@ impl Recorder {
     }
 }
 
+/// Gauges of a bearing's flexible cage.
+fn gauges<'s>(assembly: &'s Assembly, bearing: &Bearing) -> Option<&'s [RadiusGauge]> {
+    let nodes = bearing.cage.as_ref()?.nodes.as_ref()?;
+    let gauges = &assembly.floating[nodes.floating].gauges[..];
+    (!gauges.is_empty()).then_some(gauges)
+}
+
+/// Changes of the radius of a bearing's flexible cage, m.
+fn radii<'s>(
+    simulation: &'s Simulation,
+    bearing: &Bearing,
+) -> Option<impl Iterator<Item = f64> + Clone + use<'s>> {
+    let system = &simulation.system;
+    let gauges = gauges(&system.assembly, bearing)?;
+    let solid = bearing.cage.as_ref()?.nodes.as_ref()?.floating;
+    let [gone, _] = system.assembly.floating[solid].split(system.deformed(&simulation.state, solid));
+    Some(gauges.iter().map(move |gauge| gauge.shape.iter().zip(gone).map(|(s, q)| s * q).sum()))
+}
+
 /// 1, or −1 for a reversed bearing: half a turn about Z reverses its X and Y.
 fn facing(mount: &Mount) -> f64 {
     if mount.reversed { -1.0 } else { 1.0 }
@@ -373,6 +401,10 @@ fn bearing_columns(
             if cage.contacts.guidance != Guidance::Balls {
                 add("cage_guide_load".into(), "N");
             }
+            if gauges(assembly, bearing).is_some() {
+                add("cage_radius_smallest".into(), "m");
+                add("cage_radius_largest".into(), "m");
+            }
         }
         ChannelGroup::Orbits => {
             for ball in balls {
@@ -387,6 +419,11 @@ fn bearing_columns(
             add(format!("ball_{ball}_inner_load"), "N");
             add(format!("ball_{ball}_outer_load"), "N");
         }),
+        ChannelGroup::CageRadius => {
+            for gauge in gauges(assembly, bearing).unwrap_or_default() {
+                add(format!("cage_radius_{:.0}", gauge.angle.to_degrees()), "m");
+            }
+        }
         ChannelGroup::Pockets if bearing.cage.is_some() => {
             balls.for_each(|ball| add(format!("ball_{ball}_pocket_load"), "N"));
         }
