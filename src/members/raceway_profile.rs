@@ -257,6 +257,10 @@ const PART_OF_REACH: f64 = 0.5;
 /// Fraction of a wave that a ball may pass in a step.
 const PART_OF_WAVE: f64 = 0.125;
 
+/// Largest rotation of a ball with a profile in a step, rad: error control does not watch orientations of balls. A step of
+/// fourth order errs by 1e-7 rad.
+const LARGEST_TURN: f64 = 0.2;
+
 /// Longest step, s, in which every ball of `set` meets the profiles on its path, from the races as last evaluated.
 ///
 /// Error control does not see what is between the stages: in smooth rolling steps grow until a ball passes a dent
@@ -308,7 +312,7 @@ pub(crate) fn longest_step(set: &BallSet, state: &[f64]) -> f64 {
                 ProfileLaw::Spall(law) => spall_room(law, away),
                 ProfileLaw::Waviness(wave) => PART_OF_WAVE * TAU * radius / wave.order,
             };
-            longest = longest.min(may_move / speed);
+            longest = longest.min(may_move.min(LARGEST_TURN * radius) / speed);
         }
     }
     longest

@@ -78,13 +78,7 @@ fn refused(item: ItemRef, name: &str, part: &str) -> SceneError {
 
 /// Angle of the nominal contact around the groove of a race, from its bottom towards X, rad.
 fn nominal_track(geometry: &BearingGeometry, side: usize) -> f64 {
-    let (raceway, outward) = match side {
-        0 => (&geometry.inner, -1.0),
-        _ => (&geometry.outer, 1.0),
-    };
-    // A ball of a deep-groove bearing touches the bottoms.
-    let radial = outward * (geometry.pitch_radius - raceway.centre_radius);
-    if raceway.centre_axial == 0.0 { 0.0 } else { libm::atan2(-raceway.centre_axial, radial) }
+    if side == 0 { -geometry.contact_angle } else { geometry.contact_angle }
 }
 
 /// Largest length of a spall, in ball radii: the slope of its walls stays below 0.5.
