@@ -10,7 +10,7 @@
 //!
 //! Approximations:
 //! - The pit is described on the developed (flat) raceway. The raceway's own curvature over the length l is omitted. It
-//!   would change the loss by the fraction r_b/R_race: deeper on an inner race, shallower on an outer one.
+//!   would change the depth by about the fraction (R + r)/R_race: deeper on an inner race, shallower on an outer one.
 //! - K_H, the contact ellipse and the direction of the normal are those of the undamaged contact. The force along the
 //!   walls is the gradient of the energy.
 //! - Δ at the middle of the contact applies to the whole contact: a spall smaller than the contact ellipse is felt

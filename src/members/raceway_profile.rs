@@ -6,6 +6,8 @@
 //! of the ball relative to the race (profiles of races) and on the orientation of the ball relative to the contact normal
 //! (profiles of balls). Forces act through the ball's centre, moments are couples between ball and race, so that momentum
 //! and energy are conserved. The contact is treated from here on as that of Hertz with the same energy: its overlap is w.
+//!
+//! Contact damping takes the rate of δ, not of w: it does not brake a ball that rolls up the wall of a spall.
 
 use crate::assembly::lists::Bearing;
 use crate::assembly::plan::Stage;

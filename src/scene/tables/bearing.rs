@@ -181,7 +181,7 @@ pub(crate) const KEYS: &[Key] = &[
         "Azimuth of the spall on the race, from the race's own Y towards its Z; the spall rotates with the race. On a ball: azimuth about the ball's X, from its Y towards its Z; at the start the ball's axes are those of the scene.").example_of("270 deg"),
     quantity("bearing.spall.groove_angle", Kind::Quantity(Angle, closed(-90.0, 90.0, "deg")),
         Depends("in the nominal track: the nominal contact angle on the outer race, minus that angle on the inner race"),
-        "Angle of the spall in the groove's cross-section, from the bottom towards the bearing's own +X. On a ball: angle from the direction of `angle` towards the ball's +X; the default is the place that meets the outer race if `angle` is the ball's azimuth.").example_of("0 deg"),
+        "Angle of the spall in the groove's cross-section, from the bottom towards the bearing's own +X. On a ball: angle from the direction of `angle` towards the ball's +X; the default is the place that meets the outer race if `angle` is the ball's azimuth and the bearing is not `reversed`.").example_of("0 deg"),
     quantity("bearing.spall.length", Kind::Quantity(Length, closed(0.0, 100.0, "mm")), Required,
         "Length in the rolling direction between the beginnings of the rounded edges, at most the ball radius; diameter on a ball. 0 for no spall.").hint(SPALL_HINT).example_of("2 mm"),
     quantity("bearing.spall.width", Kind::Quantity(Length, open(0.0, 100.0, "mm")), PROFILED_NEED,
