@@ -227,8 +227,11 @@ pub(crate) fn ball_deviations(
         return Ok(Vec::new());
     };
     // Checked by the key table: a whole number.
-    let seed = reader.number("bearing.ball.seed").unwrap_or(1.0) as u64;
-    Ok(normal(seed, balls).into_iter().map(|value| scatter * value).collect())
+    let seed = reader.given_number("bearing.ball.seed").unwrap_or_else(|| {
+        reader.note("bearing.ball.seed", "1", "another number gives other deviations");
+        1.0
+    });
+    Ok(normal(seed as u64, balls).into_iter().map(|value| scatter * value).collect())
 }
 
 /// Normally distributed numbers of mean 0 and deviation 1: SplitMix64, then Box and Muller.

@@ -172,7 +172,10 @@ impl Key {
                 format!("\"{}\"", or(usual(dimension, range)))
             }
             Kind::Either(_) => or("0.1").to_string(),
-            Kind::Quantities(dimension, range) | Kind::QuantityList(dimension, range) => {
+            Kind::QuantityList(dimension, range) => {
+                format!("[\"{0}\", \"{0}\"]", or(usual(dimension, range)))
+            }
+            Kind::Quantities(dimension, range) => {
                 format!("[\"{}\", \"100 {}\"]", or(usual(dimension, range)), range.unit)
             }
             Kind::TrueOrProfile(..) => "true".to_string(),
