@@ -13,7 +13,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
-use crate::ch3_bushing::dent::Dent;
+use crate::ch5_cage::raceway_profile::RacewayProfile;
 use crate::equilibrium::initial::prescribed_speed;
 use crate::members::cage_nodes::CageNodes;
 use crate::members::connection::Connection;
@@ -139,8 +139,10 @@ pub struct Bearing {
     pub damping: ContactDamping,
     /// Contact between neighbouring balls; without it interpenetrating balls end the run.
     pub ball_contact: Option<BallContactLaw>,
-    /// Dents in its races.
-    pub dents: Vec<Dent>,
+    /// Profiles of its races and balls.
+    pub raceway_profiles: Vec<RacewayProfile>,
+    /// Excess of each ball's radius, m; empty for equal balls.
+    pub ball_deviations: Vec<f64>,
 }
 
 /// A cage and its contacts.
@@ -169,6 +171,20 @@ impl Caged {
 }
 
 impl Bearing {
+    /// Returns whether all balls have the nominal radius.
+    pub fn has_equal_balls(&self) -> bool {
+        self.ball_deviations.iter().all(|deviation| *deviation == 0.0)
+    }
+
+    /// Tests of profiles in one evaluation: each ball for a profile of a race, two contacts for a profile of a ball,
+    /// two contacts of each ball for balls of different size.
+    pub fn profile_tests(&self) -> u64 {
+        let balls = self.geometry.ball_count;
+        let felt = self.raceway_profiles.iter().filter(|profile| !profile.vanishes());
+        let tests: usize = felt.map(|of| if of.is_on_ball() { 2 } else { balls }).sum();
+        (tests + if self.has_equal_balls() { 0 } else { 2 * balls }) as u64
+    }
+
     /// Prefix of column names: "left_"; empty for the only one.
     pub fn prefix(&self) -> String {
         self.name.as_ref().map_or(String::new(), |name| format!("{name}_"))
@@ -398,7 +414,8 @@ impl From<&DynamicProblem> for Assembly {
             points_across: problem.points_across,
             damping: problem.damping,
             ball_contact: problem.ball_contact,
-            dents: problem.dents.clone(),
+            raceway_profiles: problem.raceway_profiles.clone(),
+            ball_deviations: problem.ball_deviations.clone(),
         };
         Assembly {
             bodies,

@@ -8,7 +8,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::bearing::traction::TractionLaw;
-use crate::ch3_bushing::dent::Dent;
+use crate::ch5_cage::raceway_profile::RacewayProfile;
 use crate::equilibrium::initial::{conditions, orbital_speed};
 use crate::equilibrium::statics::StaticProblem;
 use crate::kinematics::Pose;
@@ -102,8 +102,10 @@ pub struct DynamicProblem {
     pub damping: ContactDamping,
     /// Contact between neighbouring balls; without it interpenetrating balls end the run.
     pub ball_contact: Option<BallContactLaw>,
-    /// Dents in its races.
-    pub dents: Vec<Dent>,
+    /// Profiles of its races and balls.
+    pub raceway_profiles: Vec<RacewayProfile>,
+    /// Excess of each ball's radius, m; empty for equal balls.
+    pub ball_deviations: Vec<f64>,
     /// m/s².
     pub gravity: [f64; 3],
     pub rotating_load: Option<RotatingLoad>,

@@ -9,6 +9,7 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use bearing_dynamics::ch3_bushing::dent::Dent;
+use bearing_dynamics::ch5_cage::raceway_profile::{RacewayProfile, Spall, Surface, Waviness};
 use bearing_dynamics::equilibrium::statics::COORDINATE_NAMES;
 use bearing_dynamics::motion::simulation::{Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
@@ -106,9 +107,21 @@ pub fn motion(problem: &DynamicProblem) -> Echo {
     }
     echo.insert("traction".into(), traction(problem)?);
     echo.insert("contact_damping".into(), damping(&problem.damping)?);
-    if !problem.dents.is_empty() {
-        let dents = problem.dents.iter().map(dent).collect::<Result<_, ResultsError>>()?;
-        echo.insert("dents".into(), Value::Array(dents));
+    for profile in &problem.raceway_profiles {
+        let (list, value) = match profile {
+            RacewayProfile::Dent(of) => ("dents", dent(of)?),
+            RacewayProfile::Spall(of) => ("spalls", spall(of)?),
+            RacewayProfile::Waviness(of) => ("waviness", waviness(of)?),
+        };
+        if let Value::Array(list) = echo.entry(list).or_insert_with(|| json!([])) {
+            list.push(value);
+        }
+    }
+    if !problem.ball_deviations.is_empty() {
+        let deviations = problem.ball_deviations.iter();
+        let all = deviations.map(|of| quantity("deviation", *of, "m"));
+        let all = all.collect::<Result<_, ResultsError>>()?;
+        echo.insert("ball_deviations".into(), Value::Array(all));
     }
     if !matches!(problem.assembly().bearings[0].ball_meeting(), BallMeeting::KeptApart { .. }) {
         echo.insert("ball_contact".into(), ball_contact(problem)?);
@@ -264,6 +277,49 @@ fn dent(dent: &Dent) -> Echo {
         "shoulder_height": quantity("shoulder_height", shape.shoulder_height, "m")?,
         "shoulder_width": quantity("shoulder_width", shape.shoulder_width, "m")?,
     }))
+}
+
+fn place(on: &Surface) -> Result<Map<String, Value>, ResultsError> {
+    let (name, angle, groove_angle) = match on {
+        Surface::Race { side: 0, angle, groove_angle } => (json!("inner"), angle, groove_angle),
+        Surface::Race { angle, groove_angle, .. } => (json!("outer"), angle, groove_angle),
+        Surface::Ball { ball, angle, groove_angle } => {
+            (json!(format!("ball {}", ball + 1)), angle, groove_angle)
+        }
+    };
+    let mut echo = Map::new();
+    echo.insert("on".into(), name);
+    echo.insert("angle".into(), quantity("angle", angle.to_degrees(), "deg")?);
+    let up = quantity("groove_angle", groove_angle.to_degrees(), "deg")?;
+    echo.insert("groove_angle".into(), up);
+    Ok(echo)
+}
+
+fn spall(Spall { shape, on }: &Spall) -> Echo {
+    let mut echo = place(on)?;
+    let sizes = [
+        ("length", shape.length),
+        ("width", shape.width),
+        ("edge_radius", shape.edge_radius),
+        ("depth", shape.depth),
+    ];
+    // A spall on a ball is round.
+    for (name, value) in sizes.into_iter().filter(|(_, value)| value.is_finite()) {
+        echo.insert(name.into(), quantity(name, value, "m")?);
+    }
+    Ok(Value::Object(echo))
+}
+
+fn waviness(wave: &Waviness) -> Echo {
+    let mut echo = place(&wave.on)?;
+    if let Surface::Race { .. } = wave.on {
+        echo.remove("angle");
+        echo.remove("groove_angle");
+        echo.insert("phase".into(), quantity("phase", wave.phase.to_degrees(), "deg")?);
+    }
+    echo.insert("order".into(), json!(wave.order));
+    echo.insert("amplitude".into(), quantity("amplitude", wave.amplitude, "m")?);
+    Ok(Value::Object(echo))
 }
 
 fn ball_contact(problem: &DynamicProblem) -> Echo {

@@ -21,7 +21,8 @@ use crate::members::cage_nodes::{CageNodes, CageNow, Touched};
 use crate::members::contacts;
 use crate::members::contacts::{ContactLaws, ContactTable, Kernel, Want, Work, lane};
 use crate::members::dent_table::DentError;
-use crate::members::dents;
+use crate::members::raceway_profile;
+use crate::members::raceway_profile::RacewayProfiles;
 use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
 use crate::members::section_attachments::{SectionAttachment, kinematics_at_attachment};
 use nalgebra::Vector3;
@@ -89,9 +90,9 @@ impl BallSet {
     ) -> BallSet {
         let geometry = &bearing.geometry;
         let radius = geometry.ball_radius;
-        let (dents, no_dents) = match dents::dents(bearing) {
-            Ok(dents) => (dents, None),
-            Err(error) => (Vec::new(), Some(error)),
+        let (raceway_profiles, no_dents) = match raceway_profile::profiles(bearing) {
+            Ok(profiles) => (profiles, None),
+            Err(error) => (RacewayProfiles::default(), Some(error)),
         };
         let [slices, across] =
             if steps.traction { [bearing.slices, bearing.points_across] } else { [1, 1] };
@@ -103,7 +104,7 @@ impl BallSet {
             ball_radius: radius,
             traction: bearing.traction.clone(),
             slices: Slices::new(slices, across),
-            dents,
+            raceway_profiles,
         };
         let damping = match bearing.damping {
             ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
@@ -262,13 +263,18 @@ impl BallSet {
             loads.force = sub(loads.force, force);
             loads.moment = sub(loads.moment, add(cross(race_arm, force), moment));
         }
-        // The tangential force of a dent acts through the ball's centre.
-        for dented in &self.table.dented {
-            let (side, ball) = self.layout.race_and_ball(dented.pair);
-            self.ball_force[ball] = add(self.ball_force[ball], dented.aside);
+        // The tangential force of a profile acts through the ball's centre.
+        for profiled in &self.table.profiled {
+            let (side, ball) = self.layout.race_and_ball(profiled.pair);
+            self.ball_force[ball] = add(self.ball_force[ball], profiled.aside);
             let centre = self.layout.ball_vector(state, POSITION, ball);
             let race = self.races[side].motion.position;
-            self.on_races[side].add_at(race, centre, scale(dented.aside, -1.0));
+            let loads = &mut self.on_races[side];
+            loads.add_at(race, centre, scale(profiled.aside, -1.0));
+            if profiled.couple != [0.0; 3] {
+                self.ball_moment[ball] = add(self.ball_moment[ball], profiled.couple);
+                loads.moment = sub(loads.moment, profiled.couple);
+            }
         }
     }
 
@@ -280,8 +286,8 @@ impl BallSet {
             for ball in 0..self.layout.balls {
                 let pair = side * self.layout.padded + ball;
                 let contact = &self.table.contact[pair];
-                let elastic = match self.table.dented(pair) {
-                    Some(dented) => dented.elastic,
+                let elastic = match self.table.profiled(pair) {
+                    Some(profiled) => profiled.elastic,
                     None => normal_load(law.stiffness, contact.overlap),
                 };
                 power -= (self.table.load[pair] - elastic) * contact.closing_speed;

@@ -14,8 +14,8 @@ use crate::ch2_housing::bearing::slices::{Slices, Sliding, TractionForce, Tracti
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::sub;
 use crate::members::contact_traction::{traction_lanes, traction_plain};
-use crate::members::dents;
-use crate::members::dents::{DentOnRace, DentedPair};
+use crate::members::raceway_profile;
+use crate::members::raceway_profile::{ProfiledPair, RacewayProfiles};
 use crate::members::rigid_body::BodyKinematics;
 
 /// Laws that all contacts share.
@@ -26,8 +26,8 @@ pub struct ContactLaws {
     pub ball_radius: f64,
     pub traction: TractionLaw,
     pub slices: Slices,
-    /// Dents in either race.
-    pub dents: Vec<DentOnRace>,
+    /// RacewayProfiles of races and balls.
+    pub raceway_profiles: RacewayProfiles,
 }
 
 /// Result of one evaluation, pair by pair: index = race · padded + ball.
@@ -43,8 +43,8 @@ pub struct ContactTable {
     pub slope: Vec<TractionSlope>,
     /// Loaded pairs, in order.
     pub active: Vec<usize>,
-    /// Pairs changed by a dent, in order; their overlap is w of [`dents`].
-    pub dented: Vec<DentedPair>,
+    /// Pairs changed by a profile, in order; their overlap is w of [`raceway_profile`].
+    pub profiled: Vec<ProfiledPair>,
 }
 
 impl ContactTable {
@@ -57,13 +57,13 @@ impl ContactTable {
             sliding: vec![Sliding::default(); pairs],
             slope: vec![TractionSlope::default(); pairs],
             active: Vec::with_capacity(pairs),
-            dented: Vec::with_capacity(pairs),
+            profiled: Vec::with_capacity(pairs),
         }
     }
 
-    /// The pair if a dent has changed it.
-    pub fn dented(&self, pair: usize) -> Option<&DentedPair> {
-        self.dented.iter().find(|dented| dented.pair == pair)
+    /// The pair if a profile has changed it.
+    pub fn profiled(&self, pair: usize) -> Option<&ProfiledPair> {
+        self.profiled.iter().find(|profiled| profiled.pair == pair)
     }
 }
 
@@ -144,8 +144,8 @@ pub fn evaluate(
         (Kernel::Simd, true) => detect_lanes::<true>(&set, state, table, ran),
         (Kernel::Simd, false) => detect_lanes::<false>(&set, state, table, ran),
     }
-    if set.steps.dents {
-        dents::apply(&set, state, want, table, ran);
+    if set.steps.raceway_profiles {
+        raceway_profile::apply(&set, state, want, table, ran);
     }
     table.active.clear();
     for race in 0..2 {

@@ -41,8 +41,8 @@ pub(crate) fn race_contacts(
         let contact = &table.contact[pair];
         let motion = &race.motion;
         let normal = contact.normal;
-        let (elastic, stiffness) = match table.dented(pair) {
-            Some(dented) => (dented.elastic, dented.stiffness),
+        let (elastic, stiffness) = match table.profiled(pair) {
+            Some(profiled) => (profiled.elastic, profiled.stiffness),
             None => (
                 normal_load(law.stiffness, contact.overlap),
                 normal_stiffness(law.stiffness, contact.overlap),

@@ -339,7 +339,7 @@ impl Simulation {
     /// See [`Simulation::step`].
     pub fn step_by(&mut self, step: f64) -> Result<f64, SimulationError> {
         let step = match self.control {
-            Some(_) => step.min(self.system.longest_past_dents(&self.state)),
+            Some(_) => step.min(self.system.longest_past_profiles(&self.state)),
             None => step,
         };
         let Simulation { system, state, attempt, extremes, balance, options, .. } = self;

@@ -14,10 +14,10 @@ use crate::kinematics::vec3::Vec3;
 use crate::members::ball_set::{BallSet, ContactForces};
 use crate::members::connection::{Connection, SpringForces};
 use crate::members::contacts::{Kernel, Want, Work};
-use crate::members::dents;
 use crate::members::flexible_shaft::Section;
 use crate::members::floating_solid::FloatingNow;
 use crate::members::housing_fit::SeatNow;
+use crate::members::raceway_profile;
 use crate::members::reduced_solid::ModalEnergy;
 use crate::members::rigid_body;
 use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
@@ -383,9 +383,10 @@ impl System {
         }
     }
 
-    /// Longest step, s, in which every ball meets every dent on its path; infinite without dents.
-    pub(crate) fn longest_past_dents(&self, state: &[f64]) -> f64 {
-        let dented = self.sets.iter().filter(|set| set.steps.dents);
-        dented.fold(f64::INFINITY, |least, set| least.min(dents::longest_step(set, state)))
+    /// Longest step, s, in which every ball meets every profile on its path; infinite without profiles.
+    pub(crate) fn longest_past_profiles(&self, state: &[f64]) -> f64 {
+        let profiled = self.sets.iter().filter(|set| set.steps.raceway_profiles);
+        profiled
+            .fold(f64::INFINITY, |least, set| least.min(raceway_profile::longest_step(set, state)))
     }
 }

@@ -10,6 +10,7 @@ use bearing_dynamics::ch2_housing::bearing::hertz::{
     HertzContact, HertzModel, RaceSide, contact, contact_ellipse,
 };
 use bearing_dynamics::ch3_bushing::dent::{Dent, DentShape, DentTable, dented_load};
+use bearing_dynamics::ch5_cage::raceway_profile::RacewayProfile;
 use bearing_dynamics::kinematics::vec3::{add, cross, norm, scale};
 use bearing_dynamics::members::contacts::{ContactTable, Kernel, Want};
 use bearing_dynamics::members::dent_table::{
@@ -277,7 +278,8 @@ fn dent(side: usize, angle: f64) -> Dent {
 
 fn dented(dents: Vec<Dent>) -> DynamicProblem {
     let mut problem = dynamics::bearing(table_3_5(), [0.0, 0.0, -300.0, 0.0, 0.0], 1000.0 * RPM);
-    (problem.dents, problem.ball_phase) = (dents, 0.0);
+    problem.raceway_profiles = dents.into_iter().map(RacewayProfile::Dent).collect();
+    problem.ball_phase = 0.0;
     problem
 }
 
@@ -292,8 +294,8 @@ fn a_dent_makes_no_momentum() {
         let mut rates = vec![0.0; state.len()];
         system.evaluate(0.0, &state, &mut rates);
         let set = &system.sets[0];
-        assert!(set.table.dented.len() >= 3, "{:?}", set.table.dented);
-        assert!(set.table.dented.iter().any(|dented| norm(dented.aside) > 0.1));
+        assert!(set.table.profiled.len() >= 3, "{:?}", set.table.profiled);
+        assert!(set.table.profiled.iter().any(|dented| norm(dented.aside) > 0.1));
         let (mut force, mut moment, mut largest) = ([0.0; 3], [0.0; 3], 0.0f64);
         for ball in 0..8 {
             let at = set.layout.ball_vector(&state, POSITION, ball);
@@ -328,6 +330,10 @@ fn press_ball(system: &mut System, [around, in_groove]: [f64; 2], overlap: f64) 
     system.sets[0].table.clone()
 }
 
+fn table_of_dent(system: &System) -> &DentTable {
+    system.sets[0].laws.raceway_profiles.on_races[0].dent_table().unwrap()
+}
+
 /// A dent high up in its groove is nearer to the axis than the groove's bottom: arcs from it are of that radius. And the stiffness
 /// over a dent is the slope of its load over the approach.
 #[test]
@@ -342,14 +348,14 @@ fn arcs_and_stiffness_over_a_dent() {
         let overlap = 6e-6;
         let table = press_ball(&mut system, [high[0] + arc / radius, high[1]], overlap);
         let lost = overlap - table.contact[pair].overlap;
-        let expected = system.sets[0].laws.dents[0].table.lost(overlap, [arc, 0.0]).unwrap().value;
+        let expected = table_of_dent(&system).lost(overlap, [arc, 0.0]).unwrap().value;
         // Rounding of places; arcs of the groove's bottom would be 3 % longer.
         assert!((lost / expected - 1.0).abs() <= 1e-6, "{arc}: {lost:e} {expected:e}");
     }
     for (aside, overlap) in [(0.0, 4e-6), (0.0, 15e-6), (0.004, 4e-6), (0.006, 8e-6)] {
         let mut over = |overlap: f64| {
             let table = press_ball(&mut system, [low[0] + aside, low[1]], overlap);
-            *table.dented(pair).expect("it is over the dent")
+            *table.profiled(pair).expect("it is over the dent")
         };
         let step = 1e-4 * overlap;
         let slope = (over(overlap + step).elastic - over(overlap - step).elastic) / (2.0 * step);
@@ -373,7 +379,7 @@ fn a_pass_makes_no_energy() {
         let (mut dented, mut passed, mut held) = (false, false, 0.0f64);
         while simulation.time < end {
             simulation.step().unwrap();
-            let now = simulation.system.sets[0].table.dented.iter().any(|of| of.pair >= 8);
+            let now = simulation.system.sets[0].table.profiled.iter().any(|of| of.pair >= 8);
             (dented, passed) = (dented || now, passed || (dented && !now));
             held = held.max(simulation.system.energy(&simulation.state).contact);
         }
@@ -431,7 +437,8 @@ fn no_step_passes_over_a_dent() {
         BearingGeometry::deep_groove(8, 20.047e-3, 6.013e-3, 31.953e-3, 6.310e-3, 5.963e-3);
     for (angle, accuracy) in [(4.363, 1e-3), (4.38, 1e-3), (4.38, 1e-6), (4.311, 1e-4)] {
         let mut problem = dynamics::bearing(geometry, [0.0; 5], 10_000.0 * RPM);
-        problem.dents = vec![Dent { shape: pit(400e-6, 25e-6), side: 1, angle, groove_angle: 0.0 }];
+        let dent = Dent { shape: pit(400e-6, 25e-6), side: 1, angle, groove_angle: 0.0 };
+        problem.raceway_profiles = vec![RacewayProfile::Dent(dent)];
         problem.ball_phase = 0.0;
         let place = |integrator, stepping| {
             let (rows, simulation) = motion(&problem, integrator, stepping, 2e-3, 1);

@@ -33,6 +33,7 @@ mod free_balls;
 mod geometry_laws;
 mod plan_and_step;
 mod profile_laws;
+mod raceway_profiles;
 mod relaxing;
 mod rolling_starts;
 mod sensors;

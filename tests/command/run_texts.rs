@@ -226,7 +226,7 @@ fn a_run_up_at_a_speed_that_is_held_is_told_not_to_be_drawn() {
     }
 }
 
-/// Equilibria have races without dents, so that a sequence of them is refused.
+/// Equilibria have ideal races and balls, so that a sequence of them is refused.
 #[test]
 fn dents_are_refused_in_equilibria_over_time() {
     let place = Place::new();
@@ -236,7 +236,7 @@ fn dents_are_refused_in_equilibria_over_time() {
     let scene = place.scene("course.toml", &format!("{plain}{dent}"));
     let output = bearing(&["check", scene.to_str().unwrap()]);
     assert_eq!(code(&output), 2, "{}", said(&output));
-    assert!(stderr(&output).contains("races without dents"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("ideal races and balls"), "{}", stderr(&output));
 }
 
 /// An outer race that moves by itself is part of the equilibrium, as it is where a run starts.

@@ -38,7 +38,8 @@ pub fn frictionless() -> DynamicProblem {
         slices: 15,
         points_across: 1,
         damping: ContactDamping::None,
-        dents: Vec::new(),
+        raceway_profiles: Vec::new(),
+        ball_deviations: Vec::new(),
         ball_contact: Some(BallContactLaw {
             stiffness: equal_spheres(210e9 / 0.91, geometry.ball_radius),
             friction: 0.1,

@@ -374,8 +374,10 @@ fn every_default_and_every_example_is_a_value_its_key_takes() {
             false => format!("{} = {}", key.path, key.example()),
         };
         Document::read_str(&text, Format::Toml, "test").unwrap_or_else(|error| panic!("{error}"));
-        let several =
-            matches!(key.kind, Kind::Vector(..) | Kind::Choices(_) | Kind::Quantities(..));
+        let several = matches!(
+            key.kind,
+            Kind::Vector(..) | Kind::Choices(_) | Kind::Quantities(..) | Kind::QuantityList(..)
+        );
         let lists = several || key.in_list();
         let mut document = any_document();
         let set = document.set(key.path, key.example().trim_matches('"'));

@@ -243,7 +243,8 @@ fn dip(context: &mut CaseContext, pitch: f64) -> Result<(), CaseError> {
     let mut simulation = Simulation::new(scene.assembly()?, request(&scene)?.options)?;
     simulation.snapshot();
     let set = &simulation.system.sets[0];
-    let (stiffness, table) = (set.laws.races[1].stiffness, &set.laws.dents[0].table);
+    let dent = set.laws.raceway_profiles.on_races.first().and_then(|profile| profile.dent_table());
+    let (stiffness, Some(table)) = (set.laws.races[1].stiffness, dent) else { return Ok(()) };
     let mut rows = Vec::new();
     for approach in [1e-6, 2e-6, 3e-6, 5e-6, 10e-6, 20e-6] {
         let mut row = vec![format!("{:.0}", 1e6 * approach)];

@@ -66,6 +66,8 @@ pub mod line_contact_plane_strain;
 mod misalignment_moment;
 #[path = "../misalignment_on_bushing_3_4_5/case.rs"]
 mod misalignment_on_bushing_3_4_5;
+#[path = "../raceway_profiles/case.rs"]
+mod raceway_profiles;
 #[path = "../reduced_housing/case.rs"]
 mod reduced_housing;
 #[path = "../rod_wave/case.rs"]
@@ -147,6 +149,7 @@ pub const CASES: &[Case] = &[
     bearing_conservation::CASE,
     kinematic_frequencies::CASE,
     cage_slip::CASE,
+    raceway_profiles::CASE,
     cage_speed_table_5_4::CASE,
     solid_elements::CASE,
     solid_energy_and_steps::CASE,

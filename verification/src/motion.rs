@@ -78,7 +78,8 @@ pub fn moving(
         slices: 15,
         points_across: 1,
         damping: ContactDamping::None,
-        dents: Vec::new(),
+        raceway_profiles: Vec::new(),
+        ball_deviations: Vec::new(),
         ball_contact: Some(BallContactLaw {
             stiffness: equal_spheres(
                 Material::STEEL.youngs_modulus / (1.0 - Material::STEEL.poisson_ratio.powi(2)),

@@ -9,6 +9,7 @@ use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::ch4_rotor::bore_friction::BoreFriction;
+use crate::ch5_cage::raceway_profile::RacewayProfile;
 use crate::members::ball_set::neighbours;
 use crate::members::dent_table::Fineness;
 use crate::motion::simulation::{Integrator, RunOptions, Start, Stepping};
@@ -114,7 +115,7 @@ fn of_bearing(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Ve
         traction(bearing, subject),
         contact_damping(bearing, subject),
     ];
-    items.extend(dents(bearing, subject));
+    items.extend(raceway_profiles(bearing, subject));
     items.extend(cage(bearing, subject, left_out));
     items.push(ball_contact(bearing, subject));
     items.into_iter().map(|item| item.named(bearing.name.clone())).collect()
@@ -280,26 +281,46 @@ fn contact_damping(bearing: &Bearing, subject: Subject) -> Item {
     Item::does(Stage::ContactDamping, subject, why).costing(pairs)
 }
 
-/// Dents of a bearing.
-fn dents(bearing: &Bearing, subject: Subject) -> Option<Item> {
-    if bearing.dents.is_empty() {
+/// Profiles of the races and balls of a bearing.
+fn raceway_profiles(bearing: &Bearing, subject: Subject) -> Option<Item> {
+    if bearing.raceway_profiles.is_empty() && bearing.ball_deviations.is_empty() {
         return None;
     }
-    let shapes = || bearing.dents.iter().map(|dent| &dent.shape).filter(|shape| !shape.vanishes());
-    let count = shapes().count();
-    if count == 0 {
+    let tests = bearing.profile_tests();
+    if tests == 0 {
         let why = "of no depth: Hertz's law is unchanged";
-        return Some(Item::skips(Stage::Dents, subject, why));
+        return Some(Item::skips(Stage::RacewayProfiles, subject, why));
     }
-    let balls = bearing.geometry.ball_count;
-    let solves = shapes().map(|shape| Fineness::of(shape).solves()).max().unwrap_or(0);
-    let raised = shapes().any(|shape| shape.shoulder_height > 0.0);
-    let takes = if raised { "some ten seconds, with a shoulder" } else { "some seconds" };
-    let why = format!(
-        "{count}, {balls} balls each; a table for each shape first, of at most {solves} solves of a half-space \
-          ({takes}); the equilibrium at the start omits them"
-    );
-    Some(Item::does(Stage::Dents, subject, why).costing((count * balls) as u64))
+    let felt = || bearing.raceway_profiles.iter().filter(|profile| !profile.vanishes());
+    let (mut spalls, mut waves, mut shapes) = (0, 0, Vec::new());
+    for profile in felt() {
+        match profile {
+            RacewayProfile::Dent(dent) => shapes.push(&dent.shape),
+            RacewayProfile::Spall(_) => spalls += 1,
+            RacewayProfile::Waviness(_) => waves += 1,
+        }
+    }
+    let mut parts = Vec::new();
+    if !shapes.is_empty() {
+        let solves = shapes.iter().map(|shape| Fineness::of(shape).solves()).max().unwrap_or(0);
+        let raised = shapes.iter().any(|shape| shape.shoulder_height > 0.0);
+        let takes = if raised { "some ten seconds, with a shoulder" } else { "some seconds" };
+        parts.push(format!(
+            "dents: {}, a table for each shape first, of at most {solves} solves of a half-space ({takes})",
+            shapes.len()
+        ));
+    }
+    if spalls > 0 {
+        parts.push(format!("spalls: {spalls}"));
+    }
+    if waves > 0 {
+        parts.push(format!("waves: {waves}"));
+    }
+    if !bearing.has_equal_balls() {
+        parts.push("balls of different size".to_string());
+    }
+    let why = format!("{}; the equilibrium at the start omits them", parts.join("; "));
+    Some(Item::does(Stage::RacewayProfiles, subject, why).costing(tests))
 }
 
 fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item> {

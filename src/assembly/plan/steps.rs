@@ -11,7 +11,7 @@ use crate::members::unbalance::is_coupled;
 pub struct BearingSteps {
     pub traction: bool,
     pub damping: bool,
-    pub dents: bool,
+    pub raceway_profiles: bool,
     pub pockets: bool,
     pub guide: bool,
     pub ball_contact: bool,
@@ -54,7 +54,7 @@ impl Steps {
             BearingSteps {
                 traction: of(Stage::Traction),
                 damping: of(Stage::ContactDamping),
-                dents: of(Stage::Dents),
+                raceway_profiles: of(Stage::RacewayProfiles),
                 pockets: of(Stage::Pockets),
                 guide: of(Stage::Guide),
                 ball_contact: of(Stage::BallContact),

@@ -12,6 +12,7 @@ use crate::commands::run::{planned_request, request};
 use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::assembly::plan::motion::race_freedom;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
+use bearing_dynamics::ch5_cage::raceway_profile::{RacewayProfile, Spall, Surface};
 use bearing_dynamics::motion::simulation::Stepping;
 use bearing_dynamics::output::fields::size::fields_size;
 use bearing_dynamics::output::session::table_size;
@@ -165,20 +166,64 @@ fn bearing_lines(scene: &Scene, line: &mut Line) {
     }
     line("pitch radius", format!("{:.4} mm", 1e3 * geometry.pitch_radius));
     line("contact angle", format!("{:.4} deg (nominal)", geometry.contact_angle.to_degrees()));
-    for dent in &scene.dynamics.dents {
-        let shape = &dent.shape;
-        line(
-            "dent",
+    for profile in &scene.dynamics.raceway_profiles {
+        line(profile_label(profile), profile_text(profile));
+    }
+    if !scene.dynamics.ball_deviations.is_empty() {
+        let deviations = scene.dynamics.ball_deviations.iter();
+        let all: Vec<String> = deviations.map(|of| format!("{:+.4}", 1e6 * of)).collect();
+        line("ball deviations", format!("{} um of radius, ball 1 first", all.join(" ")));
+    }
+}
+
+fn profile_label(profile: &RacewayProfile) -> &'static str {
+    match profile {
+        RacewayProfile::Dent(_) => "dent",
+        RacewayProfile::Spall(_) => "spall",
+        RacewayProfile::Waviness(_) => "waviness",
+    }
+}
+
+fn profile_text(profile: &RacewayProfile) -> String {
+    let place = |on: &Surface| match on {
+        Surface::Race { side, .. } if *side == 0 => "inner race".to_string(),
+        Surface::Race { .. } => "outer race".to_string(),
+        Surface::Ball { ball, .. } => format!("ball {}", ball + 1),
+    };
+    match profile {
+        RacewayProfile::Dent(dent) => format!(
+            "{} race at {:.4} deg, {:.4} deg up the groove: {:.4} um wide, {:.4} um deep, shoulder {:.4} um high",
+            if dent.side == 0 { "inner" } else { "outer" },
+            dent.angle.to_degrees(),
+            dent.groove_angle.to_degrees(),
+            1e6 * dent.shape.diameter,
+            1e6 * dent.shape.depth,
+            1e6 * dent.shape.shoulder_height
+        ),
+        RacewayProfile::Spall(Spall { shape, on }) => {
+            let (Surface::Race { angle, groove_angle, .. }
+            | Surface::Ball { angle, groove_angle, .. }) = on;
+            let wide = match shape.width.is_finite() {
+                true => format!(", {:.4} mm wide", 1e3 * shape.width),
+                false => String::new(),
+            };
             format!(
-                "{} race at {:.4} deg, {:.4} deg up the groove: {:.4} um wide, {:.4} um deep, shoulder {:.4} um high",
-                if dent.side == 0 { "inner" } else { "outer" },
-                dent.angle.to_degrees(),
-                dent.groove_angle.to_degrees(),
-                1e6 * shape.diameter,
+                "{} at {:.4} deg, {:.4} deg up: {:.4} mm long{wide}, {:.4} um deep, edges of {:.4} mm",
+                place(on),
+                angle.to_degrees(),
+                groove_angle.to_degrees(),
+                1e3 * shape.length,
                 1e6 * shape.depth,
-                1e6 * shape.shoulder_height
-            ),
-        );
+                1e3 * shape.edge_radius
+            )
+        }
+        RacewayProfile::Waviness(wave) => format!(
+            "{}: {} waves of {:.4} um, phase {:.4} deg",
+            place(&wave.on),
+            wave.order,
+            1e6 * wave.amplitude,
+            wave.phase.to_degrees()
+        ),
     }
 }
 

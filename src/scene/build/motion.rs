@@ -73,7 +73,8 @@ pub fn dynamic_problem(scene: &Scene) -> Result<DynamicProblem, DynamicsError> {
             let stiffness = equal_spheres(modulus, geometry.ball_radius);
             BallContactLaw { stiffness, friction, regularisation_speed }
         }),
-        dents: dynamics.dents.clone(),
+        raceway_profiles: dynamics.raceway_profiles.clone(),
+        ball_deviations: dynamics.ball_deviations.clone(),
         gravity: scene.gravity,
         rotating_load: dynamics.rotating_load.clone(),
         unbalance: dynamics.unbalance,

@@ -1,14 +1,9 @@
-//! Traction and damping between balls and races, dents in races, friction between balls.
+//! Traction and damping between balls and races, friction between balls.
 
 use crate::ch2_housing::bearing::contact::ContactDamping;
-use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use crate::ch3_bushing::dent::{Dent, DentShape};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::Reader;
-use crate::scene::resolve::solid::{item_number, missing};
-use crate::scene::text::items::ItemRef;
-use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 
 /// Keys of some laws only.
@@ -139,73 +134,4 @@ pub(crate) fn ball_friction(
         reader.note_default("ball_contact.law");
     }
     Ok(Some([reader.number(friction).unwrap_or(0.1), reader.number(speed).unwrap_or(0.01)]))
-}
-
-/// Default depth of a dent, as a fraction of its diameter: balls of usual bearings do not reach its bottom.
-const USUAL_DEPTH: f64 = 0.05;
-/// Default width of a shoulder, as a fraction of the dent's diameter.
-const USUAL_WIDTH: f64 = 0.25;
-/// Largest diameter over the ball radius: cells and intervals of the law's table are made for the size of contacts.
-const WIDEST: f64 = 0.5;
-
-/// Dents in the races.
-pub(crate) fn dents(
-    reader: &mut Reader,
-    geometry: &BearingGeometry,
-) -> Result<Vec<Dent>, SceneError> {
-    let document = reader.document;
-    document.items("bearing.dent").map(|item| dent(reader, geometry, item)).collect()
-}
-
-fn dent(
-    reader: &mut Reader,
-    geometry: &BearingGeometry,
-    item: ItemRef,
-) -> Result<Dent, SceneError> {
-    let required = |name: &str, example: &str| {
-        item_number(item, name).ok_or_else(|| missing(item, name, "", example))
-    };
-    let side = match item.value("race") {
-        Some(Checked::Choice("inner")) => 0,
-        Some(Checked::Choice(_)) => 1,
-        _ => return Err(missing(item, "race", "", "race = \"outer\"")),
-    };
-    let (angle, diameter) =
-        (required("angle", "angle = \"270 deg\"")?, required("diameter", "diameter = \"500 um\"")?);
-    let widest = WIDEST * geometry.ball_radius;
-    if diameter > widest {
-        let reason = format!(
-            "a dent wider than {} mm, half the ball's radius, is outside the model",
-            plain(1e3 * widest)
-        );
-        let advice = "the law is that of a surface that is flat except for the dent; give a smaller diameter";
-        return Err(item.error("diameter", Problem::refused(reason, advice)));
-    }
-    let depth = item_number(item, "depth").unwrap_or_else(|| {
-        let depth = USUAL_DEPTH * diameter;
-        let reason = "a twentieth of the diameter; the source gives none";
-        reader.note("bearing.dent.depth", &format!("{} um", plain(1e6 * depth)), reason);
-        depth
-    });
-    let shoulder_height = item_number(item, "shoulder_height").unwrap_or_else(|| {
-        reader.note_default("bearing.dent.shoulder_height");
-        0.0
-    });
-    let shoulder_width = match item_number(item, "shoulder_width") {
-        Some(width) => width,
-        None if shoulder_height > 0.0 => {
-            let width = USUAL_WIDTH * diameter;
-            let reason = "a quarter of the diameter";
-            reader.note(
-                "bearing.dent.shoulder_width",
-                &format!("{} um", plain(1e6 * width)),
-                reason,
-            );
-            width
-        }
-        None => 0.0,
-    };
-    let shape = DentShape { diameter, depth, shoulder_height, shoulder_width };
-    let groove_angle = item_number(item, "groove_angle").unwrap_or(0.0);
-    Ok(Dent { shape, side, angle, groove_angle })
 }

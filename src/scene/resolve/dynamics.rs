@@ -13,7 +13,7 @@ use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::resolved::{
     Cage, CageInRun, Dimensions, Dynamics, RunSettings, Shoulder,
 };
-use crate::scene::resolve::{cage, contact};
+use crate::scene::resolve::{cage, contact, raceway_profile};
 use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 
@@ -69,7 +69,8 @@ pub(crate) fn dynamics(
         points_across: reader.number("traction.points_across").unwrap_or(1.0) as usize,
         damping: contact::damping(reader)?,
         ball_friction: contact::ball_friction(reader, balls_meet)?,
-        dents: contact::dents(reader, parts.geometry)?,
+        raceway_profiles: raceway_profile::profiles(reader, parts.geometry)?,
+        ball_deviations: raceway_profile::ball_deviations(reader, parts.geometry)?,
         run: run(reader)?,
         plots: Vec::new(),
         defaults_used: Vec::new(),

@@ -354,9 +354,17 @@ fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError
         let reason = "an unbalance needs inertia";
         return not_applicable(document, "inner_race.unbalance", reason, ADVICE);
     }
-    if !bearing.dynamics.dents.is_empty() {
-        let reason = "an equilibrium has races without dents only";
-        return not_applicable(document, "bearing.dent", reason, ADVICE);
+    for list in ["bearing.dent", "bearing.spall", "bearing.waviness"] {
+        if document.items(list).next().is_some() {
+            let reason = "an equilibrium has ideal races and balls only";
+            return not_applicable(document, list, reason, ADVICE);
+        }
+    }
+    for key in ["bearing.ball.deviations", "bearing.ball.scatter"] {
+        if document.value(key).is_some() {
+            let reason = "an equilibrium has equal balls only";
+            return not_applicable(document, key, reason, ADVICE);
+        }
     }
     Ok(())
 }

@@ -11,6 +11,7 @@ pub mod housing;
 pub mod housing_scene;
 pub mod places;
 pub mod profile;
+pub mod raceway_profile;
 pub mod resolved;
 pub mod rubber;
 pub mod sensor;

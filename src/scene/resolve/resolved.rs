@@ -9,7 +9,7 @@ use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
 use crate::ch2_housing::bearing::traction::TractionLaw;
-use crate::ch3_bushing::dent::Dent;
+use crate::ch5_cage::raceway_profile::RacewayProfile;
 use crate::equilibrium::statics::Condition;
 use crate::motion::simulation::RunOptions;
 pub use crate::scene::text::document::Assumption;
@@ -154,7 +154,10 @@ pub struct Dynamics {
     pub damping: ContactDamping,
     /// Friction coefficient and regularisation speed (m/s) of the contact between balls.
     pub ball_friction: Option<[f64; 2]>,
-    pub dents: Vec<Dent>,
+    /// Dents, spalls and waves, in this order.
+    pub raceway_profiles: Vec<RacewayProfile>,
+    /// Excess of each ball's radius, m; empty for equal balls.
+    pub ball_deviations: Vec<f64>,
     /// Beside the groove of the inner and of the outer race.
     pub shoulders: [Shoulder; 2],
     /// `None` if the scene gives no end.

@@ -10,6 +10,8 @@ pub const KINDS: &[&str] = &["deep-groove", "angular-contact"];
 pub const HERTZ_MODELS: &[&str] = &["hamrock-brewe", "exact"];
 pub const THROUGH: &[&str] = &["ball", "inner-race", "outer-race"];
 pub const DENTED: &[&str] = &["outer", "inner"];
+/// Parts with a spall or waves.
+pub const PROFILED: &[&str] = &["outer", "inner", "ball"];
 pub const GUIDANCE: &[&str] = &["outer-race", "inner-race", "balls"];
 /// Plots: the first three of statics, the others of a run.
 pub const PLOTS: &[&str] =
@@ -62,6 +64,12 @@ const OSCULATION_HINT: &str =
     "osculation is ball diameter / (2 groove radius), usually 0.92 to 0.99";
 const DENT_HINT: &str =
     "dents are micrometres deep and some tenths of a millimetre wide; check the unit";
+const SPALL_HINT: &str =
+    "spalls are millimetres long and some tenths of a millimetre deep; check the unit";
+const WAVE_HINT: &str = "waves of ground raceways are parts of a micrometre high; check the unit";
+const SIZE_HINT: &str = "balls of one grade differ by less than a micrometre; check the unit";
+const PROFILED_NEED: Need = Depends("required on a race; not allowed on a ball");
+const PROFILED_BALL_NEED: Need = Depends("required on a ball; not allowed on a race");
 const GROOVE_HINT: &str = "the groove's cross-section radius is slightly more than the ball radius";
 
 pub(crate) const fn quantity(path: &'static str, kind: Kind, need: Need, doc: &'static str) -> Key {
@@ -134,6 +142,13 @@ pub(crate) const KEYS: &[Key] = &[
         .hint("was a diameter given, or a wrong unit?"),
     quantity("bearing.ball.diameter", RADIUS, BALL_NEED, "Ball diameter.").group("size")
         .hint("is its unit right?"),
+    Key::new("bearing.ball.deviations", Kind::QuantityList(Length, closed(-0.1, 0.1, "mm")), Optional,
+        "Excess of each ball's radius over the common one, ball 1 first; positive for a larger ball. Runs only. It changes the overlap with both races; mass, pockets and contacts between balls stay nominal.").group("deviations").hint(SIZE_HINT).example_of("0.2 um"),
+    quantity("bearing.ball.scatter", Kind::Quantity(Length, closed(0.0, 0.1, "mm")), Optional,
+        "Standard deviation of normally distributed deviations of the balls' radii. `check` prints them.").group("deviations").hint(SIZE_HINT).example_of("0.1 um"),
+    Key::new("bearing.ball.seed", Kind::Integer { low: 0, high: 1_000_000_000 },
+        Depends("1 with `scatter`, otherwise not allowed"),
+        "Seed of the random deviations of `scatter`; another number gives other deviations.").example_of("2"),
     quantity("bearing.ball.material.youngs_modulus", MODULUS, STEEL_MODULUS, "Young's modulus.").hint(MODULUS_HINT),
     Key::new("bearing.ball.material.poisson_ratio", POISSON, STEEL_POISSON, "Poisson's ratio.").hint(POISSON_HINT),
     quantity("bearing.ball.material.density", DENSITY, STEEL_DENSITY, "Density.").hint(DENSITY_HINT),
@@ -160,6 +175,38 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("bearing.dent.shoulder_width", Kind::Quantity(Length, open(0.0, 100.0, "mm")),
         Depends("1/4 of the diameter"),
         "Width of the shoulder outside the pit.").hint(DENT_HINT).example_of("125 um"),
+    Key::new("bearing.spall.on", Kind::Choice(PROFILED), Required, "Part with the spall: a race, or a ball."),
+    Key::new("bearing.spall.ball", Kind::Integer { low: 1, high: 200 }, PROFILED_BALL_NEED, "Number of the ball."),
+    quantity("bearing.spall.angle", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), Required,
+        "Azimuth of the spall on the race, from the race's own Y towards its Z; the spall rotates with the race. On a ball: azimuth about the ball's X, from its Y towards its Z; at the start the ball's axes are those of the scene.").example_of("270 deg"),
+    quantity("bearing.spall.groove_angle", Kind::Quantity(Angle, closed(-90.0, 90.0, "deg")),
+        Depends("in the nominal track: the nominal contact angle on the outer race, minus that angle on the inner race"),
+        "Angle of the spall in the groove's cross-section, from the bottom towards the bearing's own +X. On a ball: angle from the direction of `angle` towards the ball's +X; the default is the place that meets the outer race if `angle` is the ball's azimuth and the bearing is not `reversed`.").example_of("0 deg"),
+    quantity("bearing.spall.length", Kind::Quantity(Length, closed(0.0, 100.0, "mm")), Required,
+        "Length in the rolling direction between the beginnings of the rounded edges, at most the ball radius; diameter on a ball. 0 for no spall.").hint(SPALL_HINT).example_of("2 mm"),
+    quantity("bearing.spall.width", Kind::Quantity(Length, open(0.0, 100.0, "mm")), PROFILED_NEED,
+        "Width across the rolling direction. The depth is constant in the middle half of the width, and falls to zero at the sides.").hint(SPALL_HINT).example_of("4 mm"),
+    quantity("bearing.spall.edge_radius", Kind::Quantity(Length, closed(0.0, 100.0, "mm")),
+        Default { value: "1 mm", reason: "r of Fig. 5.29" }, "Radius r of the rounded edges.").hint(SPALL_HINT),
+    quantity("bearing.spall.floor_radius", Kind::Quantity(Length, open(0.0, 10_000.0, "mm")),
+        Depends("6 mm (R of Fig. 5.29) without `depth`"),
+        "Radius R of the floor, which determines the depth R + r - sqrt((R + r)^2 - l^2/4). A floor tighter than the ball is bridged.").group("floor").hint(SPALL_HINT),
+    quantity("bearing.spall.depth", Kind::Quantity(Length, closed(0.0, 100.0, "mm")),
+        Depends("from `floor_radius`"),
+        "Depth of the floor, which determines its radius. 0 for no spall.").group("floor").hint(SPALL_HINT).example_of("0.07 mm"),
+    Key::new("bearing.waviness.on", Kind::Choice(PROFILED), Required, "Part with the waves: a race, or a ball."),
+    Key::new("bearing.waviness.ball", Kind::Integer { low: 1, high: 200 }, PROFILED_BALL_NEED, "Number of the ball."),
+    Key::new("bearing.waviness.order", Kind::Integer { low: 1, high: 1000 }, Required, "Number n of waves on the circumference.").example_of("12"),
+    quantity("bearing.waviness.amplitude", Kind::Quantity(Length, closed(0.0, 0.1, "mm")), Required,
+        "Amplitude A of the waves, normal to the surface. Crests, where cos(n angle + phase) = 1, increase the overlap of a ball by A. The wave has the same height across the groove.").hint(WAVE_HINT).example_of("0.5 um"),
+    quantity("bearing.waviness.phase", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")),
+        Default { value: "0 deg", reason: "a crest on the race's own Y; not allowed on a ball" },
+        "Phase of the waves, in the azimuth from the race's own Y towards its Z."),
+    quantity("bearing.waviness.angle", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), PROFILED_BALL_NEED,
+        "Azimuth of the pole of a ball's waves about the ball's X, from its Y towards its Z; at the start the ball's axes are those of the scene. The wave is the same on every great circle through the pole.").example_of("0 deg"),
+    quantity("bearing.waviness.groove_angle", Kind::Quantity(Angle, closed(-90.0, 90.0, "deg")),
+        Default { value: "0 deg", reason: "the pole is in the radial plane; not allowed on a race" },
+        "Angle of the pole from the direction of `angle` towards the ball's +X."),
     quantity("bearing.cage.mass", Kind::Quantity(Mass, open(0.0, 10_000.0, "kg")), Optional, "Mass of the cage."),
     Key::new("bearing.cage.guidance", Kind::Choice(GUIDANCE), Optional, "Part that guides the cage."),
 
@@ -212,6 +259,10 @@ pub(crate) const TABLES: &[Table] = &[
     table("bearing.ball.material", "Material of the balls; every key is optional.", MATERIAL_EXAMPLE),
     list_table("bearing.dent", "A dent in a race (3.20), any number. Runs only; equilibria ignore dents.",
         "[[bearing.dent]]\nrace = \"outer\"\nangle = \"270 deg\"\ndiameter = \"500 um\""),
+    list_table("bearing.spall", "A spall in a race or on a ball (5.4.3), any number. Runs only; equilibria ignore spalls.",
+        "[[bearing.spall]]\non = \"outer\"\nangle = \"270 deg\"\nlength = \"2 mm\"\nwidth = \"4 mm\""),
+    list_table("bearing.waviness", "Waves of a race or a ball, any number. Runs only; equilibria ignore waves.",
+        "[[bearing.waviness]]\non = \"outer\"\norder = 12\namplitude = \"0.5 um\""),
     table("bearing.cage", "Cage; the table and every key of it are optional.", "[bearing.cage]\npocket_radius = \"6.2 mm\""),
     table("inner_race", "Loads or prescribed displacements of the inner race. A coordinate without a key is free and unloaded.",
         "[inner_race]\nx = { load = \"250 N\" }"),

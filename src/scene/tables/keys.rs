@@ -70,6 +70,8 @@ pub enum Kind {
     Either(&'static [Kind]),
     /// A list of quantities, strictly increasing.
     Quantities(Dimension, Range),
+    /// A list of quantities in any order, one for each of several equal parts.
+    QuantityList(Dimension, Range),
     /// `true` for fixed at zero, or a profile.
     TrueOrProfile(Dimension, Range),
 }
@@ -170,6 +172,9 @@ impl Key {
                 format!("\"{}\"", or(usual(dimension, range)))
             }
             Kind::Either(_) => or("0.1").to_string(),
+            Kind::QuantityList(dimension, range) => {
+                format!("[\"{0}\", \"{0}\"]", or(usual(dimension, range)))
+            }
             Kind::Quantities(dimension, range) => {
                 format!("[\"{}\", \"100 {}\"]", or(usual(dimension, range)), range.unit)
             }

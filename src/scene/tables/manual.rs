@@ -129,6 +129,11 @@ fn table_markdown(text: &mut String, path: &str, heading: &str, doc: &str) {
     text.push('\n');
 }
 
+fn several(dimension: Dimension) -> String {
+    let noun = noun(dimension);
+    noun.strip_suffix('y').map_or(format!("{noun}s"), |stem| format!("{stem}ies"))
+}
+
 fn kind_and_range(key: &Key) -> (String, String) {
     let words = |choices: &[&str]| {
         choices.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ")
@@ -154,10 +159,10 @@ fn kind_and_range(key: &Key) -> (String, String) {
             (nouns.join(" or "), range)
         }
         Kind::Quantities(dimension, _) => {
-            let noun = noun(dimension);
-            let many =
-                noun.strip_suffix('y').map_or(format!("{noun}s"), |stem| format!("{stem}ies"));
-            (format!("list of increasing {many}"), format!("each {range}"))
+            (format!("list of increasing {}", several(dimension)), format!("each {range}"))
+        }
+        Kind::QuantityList(dimension, _) => {
+            (format!("list of {}", several(dimension)), format!("each {range}"))
         }
         Kind::TrueOrProfile(dimension, _) => {
             (format!("`true`, or {} or profile", noun(dimension)), range)
@@ -206,7 +211,7 @@ body and a spring must have different names.
 Races are mounted on bodies (`inner_on`, `outer_on`) at axial positions (`inner_at`, `outer_at`). A race that is mounted on none is a body of its own, described by
 `[inner_race]` or `[outer_race]`. Columns, tables and plots of a bearing start with its name, `left_inner_z`, those of a body with the body's name, `shaft_z`.
 X of races, balls and cage is measured from the bearing's position (`inner_at`) in all results; X of a body from the origin. Results of a
-`reversed` bearing are in the scene's axes too: azimuths, tilts, speeds and slip. Only contact angles, `ball_phase` and dents are in the bearing's own axes.
+`reversed` bearing are in the scene's axes too: azimuths, tilts, speeds and slip. Only contact angles, `ball_phase` and the profiles of races are in the bearing's own axes.
 
 `quasi-static` housings may have several bearings; the result is a sequence of equilibria. An outer race with `axial = \"free\"` has an equilibrium only without an axial
 force on it; in a `reduced` run that starts from nominal positions it slides.

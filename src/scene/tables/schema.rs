@@ -276,7 +276,9 @@ fn key_schema(key: &'static Key) -> Value {
                 .collect();
             json!({ "anyOf": any })
         }
-        Kind::Quantities(dimension, _) => list(&reference(dimension), 1, None),
+        Kind::Quantities(dimension, _) | Kind::QuantityList(dimension, _) => {
+            list(&reference(dimension), 1, None)
+        }
         Kind::TrueOrProfile(dimension, _) => {
             let profile = json!({ "$ref": format!("#/$defs/{}", profile_name(dimension)) });
             json!({ "anyOf": [{ "type": "boolean" }, profile] })
@@ -310,6 +312,7 @@ pub(crate) fn range_text(key: &Key) -> Option<String> {
         | Kind::Quantity(_, range)
         | Kind::Vector(_, range)
         | Kind::Quantities(_, range)
+        | Kind::QuantityList(_, range)
         | Kind::TrueOrProfile(_, range)
         | Kind::Profile(_, range) => Some(Range::to_string(&range)),
         Kind::Either(kinds) => {

@@ -179,6 +179,7 @@ fn refuse_unsweepable(path: &str, leads: &Leads) -> Result<(), Problem> {
         | Kind::Choices(_)
         | Kind::Vector(..)
         | Kind::Quantities(..)
+        | Kind::QuantityList(..)
         | Kind::TrueOrProfile(..) => Err(Problem::NotSweepable),
         _ => Ok(()),
     }

@@ -85,7 +85,10 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
             profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
         }
         (Kind::Quantities(dimension, range), Value::List(items)) => {
-            quantities(key, items, node.offset, dimension, range)
+            quantities(key, items, node.offset, (dimension, range), true)
+        }
+        (Kind::QuantityList(dimension, range), Value::List(items)) => {
+            quantities(key, items, node.offset, (dimension, range), false)
         }
         (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
             either(key, kinds, &node.value).map_err(here)
@@ -105,7 +108,11 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             _ => Value::Text(text.to_string()),
         },
         Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
-        Kind::Vector(..) | Kind::Choices(_) | Kind::Quantities(..) | Kind::TrueOrProfile(..) => {
+        Kind::Vector(..)
+        | Kind::Choices(_)
+        | Kind::Quantities(..)
+        | Kind::QuantityList(..)
+        | Kind::TrueOrProfile(..) => {
             return Err(Problem::NotSweepable);
         }
         Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
@@ -139,13 +146,13 @@ fn quantities(
     key: &Key,
     items: &[Node],
     offset: usize,
-    dimension: Dimension,
-    range: Range,
+    (dimension, range): (Dimension, Range),
+    increasing: bool,
 ) -> Result<Checked, ValueError> {
     let mut values: Vec<f64> = Vec::new();
     for item in items {
         let value = quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))?;
-        if values.last().is_some_and(|last| value <= *last) {
+        if increasing && values.last().is_some_and(|last| value <= *last) {
             let written = shown(&item.value);
             return Err((item.offset, Problem::NotIncreasing { written }).into());
         }
@@ -177,6 +184,9 @@ fn expected(kind: Kind) -> String {
         }
         Kind::Quantities(dimension, _) => {
             format!("a list of increasing values with units, each {}", dimension.name())
+        }
+        Kind::QuantityList(dimension, _) => {
+            format!("a list of values with units, each {}", dimension.name())
         }
         Kind::TrueOrProfile(dimension, range) => {
             format!(
