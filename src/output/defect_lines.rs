@@ -129,3 +129,14 @@ pub fn read_line(spectrum: &Spectrum, frequency: f64) -> Option<LineReading> {
 pub fn overlap(one: f64, other: f64, bin_width: f64) -> bool {
     (one - other).abs() < LOBE as f64 * bin_width
 }
+
+/// Defect lines of the bearing to which a channel belongs, or of all bearings.
+pub fn lines_for<'l>(
+    lines: &'l [BearingLines],
+    channel: &str,
+) -> impl Iterator<Item = &'l DefectLine> {
+    let of = |of: &&BearingLines| !of.prefix.is_empty() && channel.starts_with(&of.prefix);
+    let own = lines.iter().position(|bearing| of(&bearing));
+    let own = own.map_or(lines, |own| &lines[own..=own]);
+    own.iter().flat_map(|bearing| &bearing.lines)
+}

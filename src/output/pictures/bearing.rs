@@ -1,7 +1,7 @@
 //! Plots of a run with bearings.
 
 use crate::numeric::clock::to_digits;
-use crate::output::defect_lines::{BearingLines, DefectLine};
+use crate::output::defect_lines::{BearingLines, DefectLine, lines_for};
 use crate::output::plots::{
     Axis, Curve, Mark, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy, xy_marked,
 };
@@ -262,17 +262,6 @@ fn marks(lines: &[BearingLines], channel: &str) -> Vec<Mark> {
     let mut lines: Vec<&DefectLine> = lines_for(lines, channel).collect();
     lines.sort_by_key(|line| line.order);
     lines.into_iter().map(|line| Mark { at: line.frequency, label: line.label() }).collect()
-}
-
-/// Defect lines of the bearing to which a channel belongs, or of all bearings.
-pub fn lines_for<'l>(
-    lines: &'l [BearingLines],
-    channel: &str,
-) -> impl Iterator<Item = &'l DefectLine> {
-    let of = |of: &&BearingLines| !of.prefix.is_empty() && channel.starts_with(&of.prefix);
-    let own = lines.iter().position(|bearing| of(&bearing));
-    let own = own.map_or(lines, |own| &lines[own..=own]);
-    own.iter().flat_map(|bearing| &bearing.lines)
 }
 
 /// Amplitudes times `scale` over frequency, without bins that are rounding.

@@ -10,8 +10,9 @@ use crate::motion::error_control::SHARE;
 use crate::motion::simulation::{Integrator, Simulation, Stepping};
 use crate::numeric::clock::rounded;
 use crate::output::atomic::write_atomic;
-use crate::output::defect_lines::{BearingLines, DefectLine, NOISE_BINS, overlap, read_line};
-use crate::output::pictures::bearing::lines_for;
+use crate::output::defect_lines::{
+    BearingLines, DefectLine, NOISE_BINS, lines_for, overlap, read_line,
+};
 use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, quantity};
 use crate::output::series::{Column, Series, columns_path};
 use crate::output::session::{Motion, Session, Status};

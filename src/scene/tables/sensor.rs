@@ -41,7 +41,7 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("sensor.frequency", Kind::Quantity(Frequency, closed(1e3, 1e10, "Hz")), Depends("the resonator's natural frequency"), "Frequency at which the reflection is measured.").hint("near the natural frequency, which `bearing check` prints").example_of("34 MHz"),
     Key::new("sensor.sampling", RATE, Depends("every output row"), "Sampling rate of the sensor's spectra, at most one sample per output row. The interval is rounded to a whole number of rows; the actual rate is in the summary. Without `low_pass`, content above half the rate is aliased, as in a converter without a filter.").hint("at most 1/`numerics.output_interval`").example_of("20 kHz"),
     Key::new("sensor.low_pass", RATE, Optional, "Cut-off frequency (-3 dB) of a Butterworth filter of order 2, applied to the rows before sampling. The recorded column is not filtered.").hint("below half the rate of the output rows").example_of("5 kHz"),
-    Key::new("sensor.envelope_band", Kind::Quantities(Frequency, closed(0.0, 1e9, "Hz")), Optional, "Lower and upper frequency of the band of the sensor's envelope spectrum; without it there is none. Choose a band around a resonance that the defect excites.").hint("both below half the sampling rate").example_of("1 kHz"),
+    Key::new("sensor.envelope_band", Kind::Quantities(Frequency, closed(0.0, 1e9, "Hz")), Optional, "Lower and upper frequency of the band of the sensor's envelope spectrum; without it there is none. Choose a band around a resonance that the defect excites.").hint("both below half the sampling rate"),
 ];
 
 #[rustfmt::skip]
