@@ -108,7 +108,11 @@ fn tests_of_motion(context: &mut CaseContext) -> Result<(), CaseError> {
         style: Style::LinesAndMarkers,
         curves: vec![Curve::new("3 mm along the axis", depths.to_vec())],
     })?;
-    context.figure("radial_distance", svg, "What Fig. 5.3 measures; the source prints no values.");
+    context.figure(
+        "reflection_over_distance",
+        svg,
+        "What Fig. 5.3 measures; the source prints no values.",
+    );
 
     // Fig. 5.5: the cage on a shaker, 120 Hz along its axis and across it, 0.1 mm, without an offset.
     let rate = 2048.0;
