@@ -5,3 +5,4 @@ pub mod node_contact;
 pub mod raceway_profile;
 pub mod spall;
 pub mod telemeter;
+pub mod telemeter_array;

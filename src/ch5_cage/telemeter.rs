@@ -108,7 +108,7 @@ fn potential_along(a: f64, place: Vec3, direction: Vec3) -> f64 {
 }
 
 /// Unit vector perpendicular to `axis`.
-fn perpendicular(axis: Vec3) -> Vec3 {
+pub(crate) fn perpendicular(axis: Vec3) -> Vec3 {
     let helper = if axis[1].abs() < 0.6 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
     let across = add_scaled(helper, -dot(helper, axis), axis);
     scale(across, 1.0 / norm(across))

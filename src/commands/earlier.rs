@@ -146,7 +146,8 @@ fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
     // `front_inner_race` has the columns `front_inner_x`, `spindle_at_nose` those of `spindle_nose_y`.
     let of_body = |name: &str| {
         let column = name.strip_suffix("_race").unwrap_or(name).replace("_at_", "_");
-        let sensor = name.strip_prefix("sensor_").unwrap_or_default();
+        let sensor = name.strip_prefix("sensor_").or_else(|| name.strip_prefix("envelope_"));
+        let sensor = sensor.unwrap_or_default();
         let of_sensor = ["acceleration", "reflection"].map(|what| has(format!("{sensor}_{what}")));
         has(format!("{name}_y")) || has(format!("{column}_y")) || of_sensor.contains(&true)
     };
@@ -154,7 +155,15 @@ fn pictures_by_name(folder: &Path) -> Vec<PathBuf> {
         |prefix: &str| ["ball_", "cage_"].iter().any(|of| begins(format!("{prefix}{of}")));
     let of_bearing =
         |name: &str| summary["bearings"][name].is_object() || of_balls(&format!("{name}_"));
+    // Spectra of sensors with a sampling rate of their own.
+    let is_spectrum = |file: &str| {
+        let channel = file.strip_prefix("spectrum_").and_then(|of| of.strip_suffix(".csv"));
+        channel.is_some_and(|of| has(of.strip_suffix("_envelope").unwrap_or(of).to_string()))
+    };
     let is_drawn = |file: &str| {
+        if is_spectrum(file) {
+            return true;
+        }
         let Some(stem) = file.strip_suffix(".svg") else { return false };
         let loads = stem.strip_prefix("series_").and_then(|of| of.strip_suffix("loads"));
         let of_loads = loads.is_some_and(of_balls);

@@ -161,6 +161,72 @@ impl Section {
         SectionNow { race: BodyKinematics::new(state), turn, axis }
     }
 
+    /// Acceleration of the section's centre, m/s², and its angular acceleration, rad/s², inertial axes: time derivatives
+    /// of the velocities of [`Section::place`] without reversal.
+    ///
+    /// `linear` and `angular` are those of the body, `rates` the rates of `bend`. Third-order terms in the rotation of the
+    /// section are omitted.
+    pub fn acceleration(
+        &self,
+        body: &BodyKinematics,
+        bend: &Bend,
+        [linear, angular]: [Vec3; 2],
+        rates: &Bend,
+    ) -> [Vec3; 2] {
+        let [e2, e3] = body.tilt_directions;
+        let own = &body.motion;
+        let across = |shape: &[f64], of: [&[f64]; 3]| [sum(shape, of[0]), sum(shape, of[1])];
+        let lateral = |[a, b]: [f64; 2]| add(scale(e2, a), scale(e3, b));
+        let turning = |[a, b]: [f64; 2]| add(scale(e3, a), scale(e2, -b));
+        // The rates in the state contain the rotation of e₂ and e₃ about the axis, ξ̇ sin λ.
+        let twist = dot(own.spin, e2) * own.axis[1] / body.cos_lambda;
+        let untwisted = |shape: &[f64]| {
+            let ([u, v], [du, dv]) = (across(shape, bend.speed), across(shape, rates.speed));
+            [du - twist * v, dv + twist * u]
+        };
+        let tilting = tilting(body);
+        let (spin, spin_rate) = (dot(own.spin, own.axis), dot(angular, own.axis));
+        let axis_rate = cross(tilting, own.axis);
+        let tilting_rate = add_scaled(add_scaled(angular, -spin_rate, own.axis), -spin, axis_rate);
+
+        let (shorter, shortening) = self.shorter(bend);
+        let along = self.along + sum(&self.stretch, bend.gone[2]) - shorter;
+        let arm = add_scaled(lateral(across(&self.deflection, bend.gone)), along, own.axis);
+        let stretching = sum(&self.stretch, bend.speed[2]) - shortening;
+        let shaking =
+            add_scaled(lateral(across(&self.deflection, bend.speed)), stretching, own.axis);
+        let stretching_rate =
+            sum(&self.stretch, rates.speed[2]) - self.shortening_rate(bend, rates);
+        let relative = add_scaled(lateral(untwisted(&self.deflection)), stretching_rate, own.axis);
+        // Carried with the tilt: ω̇ × r + ω × (ω × r) + 2 ω × v.
+        let carried = add_scaled(cross(tilting, arm), 2.0, shaking);
+        let carried = add(cross(tilting_rate, arm), cross(tilting, carried));
+        let linear = add(add(linear, carried), relative);
+
+        let turn = turning(across(&self.turn, bend.gone));
+        let rate = turning(across(&self.turn, bend.speed));
+        let turn_rate = add(rate, cross(tilting, turn));
+        let second = add(turning(untwisted(&self.turn)), cross(tilting, rate));
+        let bending = add_scaled(second, 0.5, add(cross(turn_rate, rate), cross(turn, second)));
+        let now = self.place(body, &Mount::at_centre(0), bend);
+        let own_axis_rate = cross(now.race.state.spin, now.axis);
+        let spinning = add(scale(now.axis, spin_rate), scale(own_axis_rate, spin));
+        [linear, add(add(tilting_rate, spinning), bending)]
+    }
+
+    /// Second time derivative of the displacement of [`Section::shorter`], m/s².
+    fn shortening_rate(&self, bend: &Bend, rates: &Bend) -> f64 {
+        let mut rate = 0.0;
+        for side in 0..2 {
+            let (gone, speed) = (bend.gone[side], bend.speed[side]);
+            for (k, row) in self.shortening.chunks_exact(gone.len().max(1)).enumerate() {
+                rate +=
+                    rates.speed[side][k] * sum(row, gone) + speed[k] * sum(row, rates.gone[side]);
+            }
+        }
+        rate
+    }
+
     /// Rotation relative to its body, rad.
     pub fn turned(&self, bend: &Bend) -> f64 {
         libm::hypot(sum(&self.turn, bend.gone[0]), sum(&self.turn, bend.gone[1]))

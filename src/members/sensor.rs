@@ -1,7 +1,9 @@
 //! Sensors: additional observations of a motion.
 
+use crate::assembly::mount::Mount;
 use crate::ch5_cage::telemeter::Telemeter;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, norm, scale, sub};
+use crate::members::flexible_shaft::Section;
 use crate::members::rigid_body::BodyKinematics;
 use crate::motion::system::System;
 use nalgebra::Vector3;
@@ -11,23 +13,60 @@ use nalgebra::Vector3;
 pub struct Sensor {
     pub name: String,
     pub kind: SensorKind,
+    pub acquisition: Acquisition,
+}
+
+/// Data acquisition of a sensor, applied to its recorded column after the run. The column itself is unchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Acquisition {
+    /// Sampling rate, Hz; `None` for every output row.
+    pub sampling: Option<f64>,
+    /// Cut-off frequency of the low-pass filter, Hz.
+    pub low_pass: Option<f64>,
+    /// Band of the envelope spectrum, Hz; `None` without an envelope spectrum.
+    pub envelope_band: Option<[f64; 2]>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum SensorKind {
     Accelerometer(Accelerometer),
+    /// Accelerometer at a node of a reduced housing.
+    Node(NodeAccelerometer),
     Telemeter(CageTelemeter),
 }
 
-/// Accelerometer mounted on a rigid body, rotating with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Accelerometer on a rigid body, or on a section of a flexible shaft. It moves and rotates with its mount.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Accelerometer {
-    /// Index in the assembly's bodies.
-    pub body: usize,
-    /// Position in the body's axes, from its centre, m.
+    pub mount: SensorMount,
+    /// Position in the axes of the mount, from its centre, m.
     pub place: Vec3,
-    /// Unit vector in the body's axes.
+    /// Unit vector in the axes of the mount, or of the scene.
     pub direction: Vec3,
+    /// True if `direction` is in the scene's axes and does not rotate.
+    pub fixed: bool,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum SensorMount {
+    /// Index in the assembly's bodies.
+    Body(usize),
+    /// Index in the assembly's flexible shafts, and the section.
+    Section(usize, Box<Section>),
+}
+
+/// Accelerometer at a node of a reduced housing: Σ φ_k q̈_k along its direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeAccelerometer {
+    /// Bearing in the housing, index in the assembly's bearings.
+    pub bearing: usize,
+    /// Wanted position, scene's axes, m; the sensor is at the nearest node.
+    pub place: Vec3,
+    /// Unit vector, scene's axes.
+    pub direction: Vec3,
+    /// Index in the assembly's solids, and displacement of the node along the direction per unit of each mode;
+    /// `None` before the housing is reduced.
+    pub modes: Option<(usize, Vec<f64>)>,
 }
 
 /// Telemeter on the cage of a bearing, with its transceiver on the outer race, on the side of the bearing's +X; the
@@ -50,31 +89,57 @@ impl Sensor {
     /// Name and unit of its column.
     pub fn column(&self) -> (String, &'static str) {
         match &self.kind {
-            SensorKind::Accelerometer(_) => (format!("{}_acceleration", self.name), "m/s^2"),
+            SensorKind::Accelerometer(_) | SensorKind::Node(_) => {
+                (format!("{}_acceleration", self.name), "m/s^2")
+            }
             SensorKind::Telemeter(_) => (format!("{}_reflection", self.name), "1"),
         }
     }
 
-    /// Reading for the last evaluation of the system, with these rates.
-    pub fn read(&self, system: &System, rates: &[f64]) -> f64 {
+    /// Reading for the last evaluation of the system, at this state with these rates.
+    pub fn read(&self, system: &System, state: &[f64], rates: &[f64]) -> f64 {
         match &self.kind {
-            SensorKind::Accelerometer(sensor) => {
-                let [linear, spin] = system.acceleration_of(rates, sensor.body);
-                sensor.read(&system.bodies[sensor.body], linear, spin)
-            }
+            SensorKind::Accelerometer(sensor) => match &sensor.mount {
+                SensorMount::Body(body) => {
+                    let [linear, spin] = system.acceleration_of(rates, *body);
+                    sensor.read(&system.bodies[*body], linear, spin)
+                }
+                SensorMount::Section(shaft, section) => {
+                    let (of, at) = (&system.assembly.shafts[*shaft], system.shafts[*shaft]);
+                    let body = &system.bodies[of.body];
+                    let bend = of.bend(at, state);
+                    let of_body = system.acceleration_of(rates, of.body);
+                    let of_modes = of.bend(at, rates);
+                    let [linear, spin] = section.acceleration(body, &bend, of_body, &of_modes);
+                    let now = section.place(body, &Mount::at_centre(of.body), &bend).race;
+                    sensor.read(&now, linear, spin)
+                }
+            },
+            SensorKind::Node(sensor) => sensor.read(system, rates),
             SensorKind::Telemeter(sensor) => sensor.read(system),
         }
     }
 }
 
 impl Accelerometer {
-    /// (v̇ + ω̇ × r + ω × (ω × r)) · d, m/s²; `linear` is v̇ and `turning` ω̇, inertial axes.
+    /// (v̇ + ω̇ × r + ω × (ω × r)) · d, m/s², for the kinematics of the mount; `linear` is v̇ and `turning` ω̇,
+    /// inertial axes.
     pub fn read(&self, now: &BodyKinematics, linear: Vec3, turning: Vec3) -> f64 {
         let turned =
             |vector: Vec3| -> Vec3 { (now.state.orientation * Vector3::from(vector)).into() };
         let (arm, spin) = (turned(self.place), now.state.spin);
         let of_point = add(linear, cross(turning, arm));
-        dot(add(of_point, cross(spin, cross(spin, arm))), turned(self.direction))
+        let direction = if self.fixed { self.direction } else { turned(self.direction) };
+        dot(add(of_point, cross(spin, cross(spin, arm))), direction)
+    }
+}
+
+impl NodeAccelerometer {
+    /// Acceleration, m/s²; NaN before the housing is reduced.
+    fn read(&self, system: &System, rates: &[f64]) -> f64 {
+        let Some((solid, modes)) = &self.modes else { return f64::NAN };
+        let (_, accelerations) = system.shapes_of(rates, *solid);
+        modes.iter().zip(accelerations).map(|(mode, of)| mode * of).sum()
     }
 }
 

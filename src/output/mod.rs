@@ -22,16 +22,19 @@
 //! | `summary.json` | every scalar as `{"value", "unit"}`; written last |
 //! | `series.csv`, `series.npy`, `series.columns.json` | one row per output interval |
 //! | `spectrum.csv` | amplitude spectra, if requested |
+//! | `spectrum_NAME.csv` | spectrum of a channel with a sampling rate of its own |
 //! | `bore.csv` | for a housing: one row per node of the bore |
 //! | `fields.pvd`, `fields/*.vtu` | for a solid: displacement, stress, contact force over time |
 //! | `*.svg` | the requested plots |
 //! | `state.json`, `state-N.npy` | the state to resume from |
 //!
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
+pub mod acquisition;
 pub mod amounts;
 pub mod assembly_results;
 pub mod atomic;
 pub mod compare;
+pub mod defect_lines;
 pub mod fields;
 pub mod folder;
 pub mod journal;

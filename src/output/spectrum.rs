@@ -9,10 +9,15 @@
 //! systems to rounding only.
 
 use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
 /// Name of the window, for axes and summaries.
 pub const WINDOW: &str = "Hann";
+/// Width of the window's main lobe, bins.
+pub const MAIN_LOBE: usize = 4;
+/// Highest side lobe of the window, dB.
+pub const SIDE_LOBES: i32 = -31;
 pub const LEAKAGE: &str = "mean removed, Hann window: main lobe 4 bins wide, side lobes from -31 dB \
                            falling 18 dB an octave, a sine between two bins up to 15 % low in its \
                            bin and up to 4 % high as an interpolated peak";
@@ -73,6 +78,67 @@ pub fn spectrum(values: &[f64], interval: f64) -> Option<Spectrum> {
         bin_width: 1.0 / (count as f64 * interval),
         amplitude: lines.iter().map(|line| scale * libm::hypot(line.re, line.im)).collect(),
     })
+}
+
+/// Number of bins of a spectrum whose envelope has a spectrum: of a single sine the envelope is constant.
+const FEWEST_BAND_BINS: usize = 2;
+
+/// Envelope of values `interval` seconds apart in a band (Hz): magnitude of the analytic signal.
+///
+/// The discrete Fourier transform of all values is multiplied by 1 from the first to the second frequency of the band
+/// (both included) and by 0 elsewhere, then transformed back in phase and in quadrature. The values continue periodically
+/// beyond both ends, so that about one reciprocal bandwidth at each end is not meaningful. The mean and half the sampling
+/// rate are never in the band.
+///
+/// `None` for fewer than [`FEWEST_ROWS`] values, or fewer than two bins in the band.
+///
+/// ```
+/// use bearing_dynamics::output::spectrum::envelope;
+/// use std::f64::consts::TAU;
+/// // A carrier of 100 Hz whose amplitude varies by half at 5 Hz.
+/// let amplitude = |t: f64| 2.0 + (TAU * 5.0 * t).cos();
+/// let time = |i: usize| i as f64 * 1e-3;
+/// let values: Vec<f64> = (0..1000).map(|i| amplitude(time(i)) * (TAU * 100.0 * time(i)).sin()).collect();
+/// let found = envelope(&values, 1e-3, [80.0, 120.0]).unwrap();
+/// assert!((0..1000).all(|i| (found[i] - amplitude(time(i))).abs() <= 1e-12));
+/// ```
+pub fn envelope(values: &[f64], interval: f64, [low, high]: [f64; 2]) -> Option<Vec<f64>> {
+    let count = values.len();
+    if count < FEWEST_ROWS {
+        return None;
+    }
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (forward, back) = (planner.plan_fft_forward(count), planner.plan_fft_inverse(count));
+    let mut input = values.to_vec();
+    let mut lines = forward.make_output_vec();
+    forward.process(&mut input, &mut lines).ok()?;
+    // Frequencies within rounding of a bin include it.
+    let bin = |frequency: f64| frequency * count as f64 * interval;
+    let kept = ((bin(low) - 1e-6).ceil().max(1.0) as usize)..=((bin(high) + 1e-6).floor() as usize);
+    let is_kept = |k: usize| kept.contains(&k) && 2 * k < count;
+    if (0..lines.len()).filter(|k| is_kept(*k)).count() < FEWEST_BAND_BINS {
+        return None;
+    }
+    // A quarter period later: times −i.
+    let quadrature = |line: &Complex<f64>| Complex::new(line.im, -line.re);
+    let turned = lines.iter().map(quadrature).collect::<Vec<_>>();
+    let [in_phase, in_quadrature] = [lines, turned].map(|mut lines| {
+        let none = |(k, line): (usize, &mut Complex<f64>)| {
+            if !is_kept(k) {
+                *line = Complex::new(0.0, 0.0);
+            }
+        };
+        lines.iter_mut().enumerate().for_each(none);
+        let mut part = back.make_output_vec();
+        back.process(&mut lines, &mut part).ok().map(|()| part)
+    });
+    let parts = in_phase?.into_iter().zip(in_quadrature?);
+    Some(parts.map(|(x, y)| libm::hypot(x, y) / count as f64).collect())
+}
+
+/// Amplitude spectrum of the [`envelope`] in a band (Hz).
+pub fn envelope_spectrum(values: &[f64], interval: f64, band: [f64; 2]) -> Option<Spectrum> {
+    spectrum(&envelope(values, interval, band)?, interval)
 }
 
 /// Peaks below this fraction of the highest peak beyond the first bin are not listed: side lobes of the window reach

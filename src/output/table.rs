@@ -1,10 +1,14 @@
 //! Time series of a run for its summary and plots.
 
 use crate::assembly::lists::Assembly;
+use crate::ch2_housing::bearing::geometry::BearingGeometry;
+use crate::members::sensor::Acquisition;
 use crate::numeric::clock::to_digits;
+use crate::output::acquisition::{Signal, acquire};
+use crate::output::defect_lines::{BearingLines, lines};
 use crate::output::series::{Series, SeriesError};
 use crate::output::session::Session;
-use crate::output::spectrum::{Spectrum, spectrum};
+use crate::output::spectrum::{Spectrum, envelope_spectrum, spectrum};
 use std::ops::Range;
 
 /// All rows of a run, and the window for means and spectra.
@@ -19,7 +23,29 @@ pub struct RunTable {
     pub bearings: Vec<String>,
     /// Races, cages, other bodies and probes that may have columns.
     pub bodies: Vec<Moving>,
-    pub sensors: Vec<(String, String)>,
+    pub sensors: Vec<SensorChannel>,
+    /// Geometry of each bearing.
+    pub geometries: Vec<BearingGeometry>,
+}
+
+/// A sensor, its column and its data acquisition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorChannel {
+    pub name: String,
+    pub column: String,
+    pub acquisition: Acquisition,
+}
+
+impl SensorChannel {
+    /// Name of the channel of its envelope in spectra.
+    pub fn envelope(&self) -> String {
+        format!("{}_envelope", self.column)
+    }
+
+    /// Recorded quantity, such as `acceleration`.
+    pub fn quantity(&self) -> &str {
+        self.column.strip_prefix(self.name.as_str()).map_or("", |of| of.trim_start_matches('_'))
+    }
 }
 
 /// Names of a body in columns and plots.
@@ -88,8 +114,20 @@ impl RunTable {
         };
         let bodies = moving(&bearings, assembly);
         let sensors = assembly.map_or(&[][..], |assembly| &assembly.sensors).iter();
-        let sensors = sensors.map(|of| (of.name.clone(), of.column().0)).collect();
-        Ok(RunTable { series, interval, window: start..end, bearings, bodies, sensors })
+        let sensors = sensors
+            .map(|of| SensorChannel {
+                name: of.name.clone(),
+                column: of.column().0,
+                acquisition: of.acquisition,
+            })
+            .collect();
+        let geometries = assembly
+            .map_or(&[][..], |assembly| &assembly.bearings)
+            .iter()
+            .map(|bearing| bearing.geometry)
+            .collect();
+        let window = start..end;
+        Ok(RunTable { series, interval, window, bearings, bodies, sensors, geometries })
     }
 
     /// Time of a row, s; of rows on the grid computed from their number, so that the rounding
@@ -120,12 +158,67 @@ impl RunTable {
         names.filter(of).cloned().collect()
     }
 
+    /// Sensor whose spectrum, or whose envelope's spectrum, has this name.
+    pub fn sensor(&self, channel: &str) -> Option<&SensorChannel> {
+        self.sensors.iter().find(|of| of.column == channel || of.envelope() == channel)
+    }
+
+    /// Unit of a channel, also of the envelope of a sensor's.
     pub fn unit(&self, channel: &str) -> &str {
+        let channel = self.sensor(channel).map_or(channel, |of| &of.column);
         let found = self.series.columns().iter().find(|column| column.name == channel);
         found.map_or("", |column| column.unit.as_str())
     }
 
-    /// Spectra of the recorded displacements of all bodies and of the sensors over the window.
+    /// Values of a sensor over the window, filtered and sampled; `None` if it is not recorded.
+    pub fn acquired(&self, sensor: &SensorChannel) -> Option<Signal> {
+        let rows = self.all(&sensor.column)?;
+        Some(acquire(&rows, self.window.clone(), self.interval, &sensor.acquisition))
+    }
+
+    /// Defect lines of each bearing at its mean speeds over the window; bearings whose races have no recorded speed, or
+    /// stand still, have none.
+    pub fn defect_lines(&self) -> Vec<BearingLines> {
+        let of = |(prefix, geometry): (&String, &BearingGeometry)| {
+            let windowed = |channel: &str| self.windowed(&format!("{prefix}{channel}"));
+            let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+            let inner = windowed("inner_speed").filter(|of| !of.is_empty())?;
+            let outer = windowed("outer_speed").unwrap_or_else(|| vec![0.0; inner.len()]);
+            let speeds = [mean(&inner), mean(&outer)];
+            let relative = inner.iter().zip(&outer).map(|(inner, outer)| inner - outer);
+            let (low, high) = relative
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), of| (a.min(of), b.max(of)));
+            let mean_relative = (speeds[0] - speeds[1]).abs();
+            if !(mean_relative > 0.0) {
+                return None;
+            }
+            let angle = |side: &str| {
+                let mean = mean(&windowed(&format!("mean_{side}_contact_angle"))?).to_radians();
+                Some(mean).filter(|angle| angle.is_finite())
+            };
+            let (contact_angle, angle_is) = match (angle("inner"), angle("outer")) {
+                (Some(inner), Some(outer)) => (
+                    0.5 * (inner + outer),
+                    "mean of both contact angles over the window, weighted by ball load",
+                ),
+                _ => (
+                    geometry.contact_angle,
+                    "nominal, because the channels `orbits` are not recorded",
+                ),
+            };
+            Some(BearingLines {
+                prefix: prefix.clone(),
+                speeds,
+                speed_change: (high - low) / mean_relative,
+                contact_angle,
+                angle_is,
+                lines: lines(prefix, geometry, speeds, contact_angle),
+            })
+        };
+        self.bearings.iter().zip(&self.geometries).filter_map(of).collect()
+    }
+
+    /// Spectra of the recorded displacements of all bodies, of the sensors and of their envelopes over the window.
     pub fn spectra(&self) -> Vec<(String, Spectrum)> {
         let of = |channel: String| {
             let values = self.windowed(&channel)?;
@@ -135,7 +228,14 @@ impl RunTable {
             .bodies
             .iter()
             .flat_map(|body| ["x", "y", "z"].map(|axis| format!("{}_{axis}", body.column)));
-        let sensors = self.sensors.iter().map(|(_, column)| column.clone());
-        channels.chain(sensors).filter_map(of).collect()
+        let mut spectra: Vec<(String, Spectrum)> = channels.filter_map(of).collect();
+        for sensor in &self.sensors {
+            let Some(Signal { values, interval }) = self.acquired(sensor) else { continue };
+            let own = spectrum(&values, interval).map(|of| (sensor.column.clone(), of));
+            let band = sensor.acquisition.envelope_band;
+            let envelope = band.and_then(|band| envelope_spectrum(&values, interval, band));
+            spectra.extend(own.into_iter().chain(envelope.map(|of| (sensor.envelope(), of))));
+        }
+        spectra
     }
 }

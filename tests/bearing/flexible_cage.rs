@@ -19,6 +19,11 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// The bearing of Table 5.3 at a constant speed (rpm), with these keys of its cage and a coarse mesh.
 fn with_cage(keys: &str, rpm: f64) -> Assembly {
+    with_stiffer_cage(keys, rpm, 1.0)
+}
+
+/// The same with Young's modulus times a factor.
+fn with_stiffer_cage(keys: &str, rpm: f64, factor: f64) -> Assembly {
     let text = include_str!("../../scenes/cage_600rpm.toml");
     let speed = format!("speed = \"{rpm} rpm\"");
     let text = text
@@ -26,7 +31,10 @@ fn with_cage(keys: &str, rpm: f64) -> Assembly {
         .replace("friction = 0.1\nreg", &format!("friction = 0.1\n{keys}\n{MESH}\nreg"))
         .replace("speed = { smooth_ramp = [\"0 rpm\", \"600 rpm\"], start = \"0 s\", duration = \"0.3 s\" }", &speed);
     assert!(text.contains(keys) && text.contains(&speed));
-    let scene = bearing_dynamics::scene::read_str(&text, Format::Toml, "cage.toml").unwrap();
+    let mut scene = bearing_dynamics::scene::read_str(&text, Format::Toml, "cage.toml").unwrap();
+    if let Some(cage) = &mut scene.dynamics.flexible_cage {
+        cage.youngs_modulus *= factor;
+    }
     let mut all = dynamic_problem(&scene).unwrap().assembly();
     add_cage_nodes(&mut all, [&scene.dynamics].into_iter()).unwrap();
     all
@@ -269,8 +277,8 @@ fn the_land_touches_where_the_cage_is_displaced_to() {
 }
 
 /// Where the cage's centre and its spin are after some milliseconds at 1200 rpm.
-fn path(keys: &str) -> Vec<[f64; 4]> {
-    let mut assembly = with_cage(keys, 1200.0);
+fn path(keys: &str, factor: f64) -> Vec<[f64; 4]> {
+    let mut assembly = with_stiffer_cage(keys, 1200.0, factor);
     // The inner race jerks, so that balls strike the pockets.
     if let Some(inner) = assembly.bodies[0].driven_mut() {
         inner.rotation = bearing_dynamics::assembly::loads::Rotation::Speed(Profile::SmoothRamp {
@@ -300,9 +308,9 @@ fn path(keys: &str) -> Vec<[f64; 4]> {
 
 #[test]
 fn a_stiff_flexible_cage_moves_as_a_rigid_one() {
-    let rigid = path("contact = { at = \"nodes\" }").into_iter();
-    let stiff = path(&format!("{REDUCED}\nyoungs_modulus = \"2.1e6 GPa\"\nmodes_to = \"1 MHz\""));
-    let soft = path(REDUCED);
+    let rigid = path("contact = { at = \"nodes\" }", 1.0).into_iter();
+    let stiff = path(&format!("{REDUCED}\nmodes_to = \"1 MHz\""), 1e4);
+    let soft = path(REDUCED, 1.0);
     assert!(stiff.iter().any(|at| at[3] > 55.0), "no ball has struck the cage");
     let (mut most, mut of_soft) = ([0.0f64; 2], [0.0f64; 2]);
     let mut size = [0.0f64; 2];

@@ -3,12 +3,18 @@
 use crate::common;
 use crate::dynamics;
 
+use crate::bent_shafts::{OVERHUNG, STEEL, alone, beam, on_springs, section, unbalanced};
 use bearing_dynamics::assembly::state::{BODY, BodyState, Layout};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch5_cage::telemeter::Telemeter;
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::flexible_shaft::Section;
+use bearing_dynamics::members::reduced_solid::ReducedSolid;
 use bearing_dynamics::members::rigid_body::BodyKinematics;
-use bearing_dynamics::members::sensor::{Accelerometer, CageTelemeter, Sensor, SensorKind};
+use bearing_dynamics::members::sensor::{
+    Accelerometer, Acquisition, CageTelemeter, NodeAccelerometer, Sensor, SensorKind, SensorMount,
+};
+use bearing_dynamics::members::shaft_modes::Kept;
 use bearing_dynamics::motion::simulation::{Simulation, Start};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
@@ -16,6 +22,10 @@ use common::table_4_1;
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::PI;
+
+fn sensor(kind: SensorKind) -> Sensor {
+    Sensor { name: "a".into(), kind, acquisition: Acquisition::default() }
+}
 
 /// A body that swings and turns about a direction that stays, at a time.
 fn body(t: f64) -> BodyState {
@@ -31,7 +41,13 @@ fn body(t: f64) -> BodyState {
 
 #[test]
 fn an_accelerometer_feels_how_its_place_is_accelerated() {
-    let sensor = Accelerometer { body: 0, place: [0.02, 0.03, -0.01], direction: [0.0, 0.8, 0.6] };
+    let sensor = Accelerometer {
+        mount: SensorMount::Body(0),
+        place: [0.02, 0.03, -0.01],
+        direction: [0.0, 0.8, 0.6],
+        fixed: false,
+    };
+    let fixed = Accelerometer { fixed: true, ..sensor.clone() };
     let place = |t: f64| {
         let now = body(t);
         Vector3::from(now.position) + now.orientation * Vector3::from(sensor.place)
@@ -46,6 +62,9 @@ fn an_accelerometer_feels_how_its_place_is_accelerated() {
         // Differences over 1e-4 s of motions of 50 1/s, and rounding of 0.04 m over 1e-8 s².
         let error = (felt - acceleration.dot(&direction)).abs();
         assert!(error <= 1e-4, "{felt} for {}, {error:e}", acceleration.dot(&direction));
+        let felt = fixed.read(&BodyKinematics::new(body(t)), linear, turning.into());
+        let error = (felt - acceleration.dot(&Vector3::from(sensor.direction))).abs();
+        assert!(error <= 1e-4, "fixed direction: {felt}, {error:e}");
     }
 }
 
@@ -79,9 +98,13 @@ fn what_a_sensor_reads_is_how_the_run_goes_on() {
     simulation.snapshot();
     let felt = [0, 1].map(|body: usize| {
         Vector3::from([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|direction| {
-            let of = Accelerometer { body, place: places[body], direction };
-            let sensor = Sensor { name: "a".into(), kind: SensorKind::Accelerometer(of) };
-            sensor.read(&simulation.system, simulation.rates())
+            let mount = SensorMount::Body(body);
+            let of = Accelerometer { mount, place: places[body], direction, fixed: false };
+            sensor(SensorKind::Accelerometer(of)).read(
+                &simulation.system,
+                &simulation.state,
+                simulation.rates(),
+            )
         }))
     });
     let orientations = [0, 1].map(|body| race_of(&simulation, body).orientation);
@@ -113,7 +136,7 @@ fn a_telemeter_reads_where_the_cage_is_from_its_outer_race() {
     };
     let (distance, offset, runout) = (4e-3, [1e-3, -5e-4], [7e-4, 0.0]);
     let of = CageTelemeter { bearing: 0, circuit, distance, offset, runout };
-    let sensor = Sensor { name: "t".into(), kind: SensorKind::Telemeter(of) };
+    let sensor = sensor(SensorKind::Telemeter(of));
     // Put in the other way round the transceiver is on the other side, and the cage begins half a turn about Z away.
     for reversed in [false, true] {
         let mut assembly = problem.assembly();
@@ -134,10 +157,96 @@ fn a_telemeter_reads_where_the_cage_is_from_its_outer_race() {
         let mut system = System::new(assembly, Kernel::Simd);
         let mut rates = vec![0.0; state.len()];
         system.evaluate(0.0, &state, &mut rates);
-        let read = sensor.read(&system, &rates);
+        let read = sensor.read(&system, &state, &rates);
         let along = if reversed { 3e-4 } else { -3e-4 };
         let centre = [along - 4e-3, 3e-4 - 1e-3, -2e-4 + 7e-4 + 5e-4];
         let expected = circuit.signal(centre, [1.0, 0.0, 0.0]);
         assert!((read - expected).abs() <= 1e-12, "{reversed}: {read} {expected}");
     }
+}
+
+/// Velocity of a place on a section of the shaft, whose axes are those of the section.
+fn velocity_on(system: &System, state: &[f64], section: &Section, place: [f64; 3]) -> Vector3<f64> {
+    let now = system.section_now(state, 0, section).state;
+    let arm = now.orientation * Vector3::from(place);
+    Vector3::from(now.velocity) + Vector3::from(now.spin).cross(&arm)
+}
+
+#[test]
+fn an_accelerometer_on_a_flexible_shaft_feels_how_its_section_is_accelerated() {
+    let mut assembly =
+        alone(&beam(OVERHUNG, STEEL), Kept { most: 3, ..Kept::ALL }, &[0.0, 0.4], 300.0);
+    on_springs(&mut assembly, &[0.1, 0.3], [1e6, 5e7, 3e7]);
+    let unbalance = unbalanced(1e-3, &assembly, 0.4);
+    assembly.shafts[0].unbalances.push(unbalance);
+    assembly.shafts[0].damping = 20.0;
+    let section = section(&assembly, 0.4);
+    let layout = start::nominal(&assembly);
+    let mut system = System::new(assembly, Kernel::Simd);
+    // Amplitudes and rates of all coordinates, so that no term is zero: bent by a degree, tilted by half of one.
+    let mut random = Noise(7);
+    let mut state = layout;
+    let body = system.places.body(0);
+    let mut of = BodyState::from_slice(&state[body..]);
+    of.orientation = UnitQuaternion::from_scaled_axis(Vector3::new(1.3, 6e-3, -9e-3));
+    of.velocity = random.vector(0.2);
+    of.spin = [300.0, 4.0, -3.0];
+    state[body..body + BODY].copy_from_slice(&of.to_array());
+    let (first, count) = (system.shafts[0], system.assembly.shafts[0].amplitudes());
+    for k in 0..count {
+        state[first + k] = 1e-3 * random.next();
+        state[first + count + k] = 0.8 * random.next();
+    }
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, &state, &mut rates);
+    let place = [0.0, 0.02, 0.01];
+    let step = 1e-6;
+    let moved = |by: f64| -> Vec<f64> {
+        state.iter().zip(&rates).map(|(of, rate)| of + by * rate).collect()
+    };
+    let [before, after] = [-step, step].map(|by| velocity_on(&system, &moved(by), &section, place));
+    let expected = (after - before) / (2.0 * step);
+    let felt =
+        Vector3::from([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|direction| {
+            let mount = SensorMount::Section(0, Box::new(section.clone()));
+            let of = Accelerometer { mount, place, direction, fixed: true };
+            sensor(SensorKind::Accelerometer(of)).read(&system, &state, &rates)
+        }));
+    assert!(expected.norm() > 1e3, "{expected}");
+    // Third order in the rotation of the section, 0.01 rad: 1e-6 of the acceleration; differences: (300 · 1e-6)².
+    let error = (felt - expected).norm();
+    assert!(error <= 1e-6 * expected.norm(), "{felt} for {expected}, {error:e}");
+}
+
+#[test]
+fn an_accelerometer_on_a_housing_feels_its_modes() {
+    let mut assembly =
+        alone(&beam(OVERHUNG, STEEL), Kept { most: 1, ..Kept::ALL }, &[0.0, 0.4], 0.0);
+    assembly.solids.push(ReducedSolid {
+        frequencies: vec![1000.0, 3000.0],
+        weight: vec![2.0, -1.0],
+        start: vec![0.0; 2],
+        ..ReducedSolid::default()
+    });
+    assembly.gravity = [0.0, 0.0, -9.81];
+    let mut system = System::new(assembly.clone(), Kernel::Simd);
+    let mut state = start::nominal(&assembly);
+    let first = system.solids[0];
+    (state[first], state[first + 1]) = (2e-5, -1e-5);
+    let mut rates = vec![0.0; state.len()];
+    system.evaluate(0.0, &state, &mut rates);
+    let of = |modes| NodeAccelerometer {
+        bearing: 0,
+        place: [0.0; 3],
+        direction: [0.0, 0.0, 1.0],
+        modes,
+    };
+    let read = |modes| sensor(SensorKind::Node(of(modes))).read(&system, &state, &rates);
+    let accelerations = [rates[first + 2], rates[first + 3]];
+    // q̈ = f − ω² q.
+    assert!((accelerations[0] - (2.0 - 20.0)).abs() <= 1e-9, "{accelerations:?}");
+    let expected = 0.3 * accelerations[0] - 0.7 * accelerations[1];
+    let found = read(Some((0, vec![0.3, -0.7])));
+    assert!((found - expected).abs() <= 1e-12, "{found} {expected}");
+    assert!(read(None).is_nan(), "before the housing is reduced");
 }

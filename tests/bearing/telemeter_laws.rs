@@ -1,7 +1,11 @@
 //! Laws of the telemeter on a cage, against formulas of other forms.
 
+use crate::dynamics::Noise;
 use bearing_dynamics::ch5_cage::telemeter::{
     Telemeter, copper_resistance, mutual_inductance, natural_frequency, self_inductance,
+};
+use bearing_dynamics::ch5_cage::telemeter_array::{
+    ArrayError, CageLoop, TelemeterArray, Transceiver,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -139,4 +143,123 @@ fn circuits_are_those_of_their_parts() {
         let expected = 200.0 * r / ((r + 50.0).powi(2) + x * x);
         assert!((taken - expected).abs() <= 1e-12 && taken > 0.0, "{taken} {expected}");
     }
+}
+
+/// Twelve small transceivers around the cage, 3 mm beside the plane of its loops, every second one radial.
+fn array(loops: Vec<CageLoop>) -> TelemeterArray {
+    let transceiver = |i: usize| {
+        let (sin, cos) = (TAU * i as f64 / 12.0 + 0.1).sin_cos();
+        let radius = if i % 2 == 0 { 28e-3 } else { 36e-3 };
+        let axis = if i % 2 == 0 { [1.0, 0.0, 0.0] } else { [0.0, cos, sin] };
+        Transceiver { centre: [3e-3, radius * cos, radius * sin], axis }
+    };
+    TelemeterArray { loops, transceivers: (0..12).map(transceiver).collect() }
+}
+
+fn loop_at(radius: f64, centre: [f64; 3]) -> CageLoop {
+    let natural = natural_frequency(radius, 0.15e-3, 100e-12);
+    let circuit = Telemeter {
+        radius,
+        transceiver_radius: 8e-3,
+        frequency: natural,
+        resistance: [8e-3, radius].map(|radius| copper_resistance(radius, 0.15e-3, natural)),
+        ..telemeter(1.0)
+    };
+    CageLoop { circuit, centre }
+}
+
+const POSE: [f64; 6] = [1e-4, -2e-4, 1.5e-4, 0.02, -4e-3, 3e-3];
+
+/// The great loop, and a small one off its centre.
+fn two_loops() -> TelemeterArray {
+    array(vec![loop_at(31.25e-3, [0.0; 3]), loop_at(10e-3, [0.0, 22e-3, 0.0])])
+}
+
+#[test]
+fn two_loops_give_all_coordinates_of_a_cage() {
+    let array = two_loops();
+    let found = array.estimate(&array.readings(&POSE), [0.0; 6]).unwrap();
+    for (i, (found, expected)) in found.pose.iter().zip(POSE).enumerate() {
+        assert!((found - expected).abs() <= 1e-9, "{i}: {found:e} for {expected:e}");
+    }
+    assert!(found.residual <= 1e-12 && found.iterations <= 20, "{found:?}");
+    let of = found.observability;
+    assert!((10.0..20.0).contains(&of.condition), "{of:?}");
+}
+
+/// Errors of the readings appear in the coordinates as the observability states, and no more than by the condition number.
+#[test]
+fn errors_of_readings_grow_as_stated() {
+    let array = two_loops();
+    let exact = array.readings(&POSE);
+    let of = array.observability(&POSE).unwrap();
+    // Uniform in ±√3: standard deviation 1.
+    let deviation = 1e-7;
+    let mut noise = Noise(3);
+    let draws = 40;
+    let mut squares = [0.0; 6];
+    for _ in 0..draws {
+        let errors: Vec<f64> =
+            exact.iter().map(|_| deviation * 3f64.sqrt() * noise.next()).collect();
+        let readings: Vec<f64> = exact.iter().zip(&errors).map(|(of, error)| of + error).collect();
+        let found = array.estimate(&readings, POSE).unwrap().pose;
+        let scales = [31.25e-3, 31.25e-3, 31.25e-3, 1.0, 1.0, 1.0];
+        let scaled = |i: usize| (found[i] - POSE[i]) / scales[i];
+        let error = (0..6).map(|i| scaled(i).powi(2)).sum::<f64>().sqrt();
+        let of_readings = errors.iter().map(|of| of * of).sum::<f64>().sqrt();
+        // |δu| ≤ |δr|/σ₆ = κ |δr|/σ₁, and a percent for what is not linear.
+        let bound = of.condition * of_readings / of.singular_values[0];
+        assert!(error <= 1.01 * bound, "{error:e} {bound:e}");
+        (0..6).for_each(|i| squares[i] += (found[i] - POSE[i]).powi(2));
+    }
+    for i in 0..6 {
+        let found = (squares[i] / draws as f64).sqrt();
+        let expected = deviation * of.noise_gain[i];
+        // A standard deviation of 40 draws has an error of 11 %.
+        assert!((found / expected - 1.0).abs() <= 0.4, "{i}: {found:e} for {expected:e}");
+    }
+}
+
+/// A circle turned about its own axis is the same circle: one loop leaves one combination open.
+#[test]
+fn one_loop_never_gives_all_coordinates() {
+    // Centred: the rotation of the cage. With a runout towards +Y: the rotation together with a displacement along Z.
+    let nominal = [0.0; 6];
+    for (runout, blind) in [(0.0, &[3][..]), (1e-3, &[2, 3])] {
+        let array = array(vec![loop_at(31.25e-3, [0.0, runout, 0.0])]);
+        let of = array.observability(&nominal).unwrap();
+        assert_eq!(of.condition, f64::INFINITY, "{of:?}");
+        for i in 0..6 {
+            assert_eq!(of.noise_gain[i].is_infinite(), blind.contains(&i), "{runout} {i}: {of:?}");
+        }
+        let moved = [0.0, 0.0, -0.01 * runout, 0.01, 0.0, 0.0];
+        let (one, other) = (array.readings(&moved), array.readings(&nominal));
+        let apart = one.iter().zip(&other);
+        let apart = apart.fold(0.0f64, |most, (one, other)| most.max((one - other).abs()));
+        // The rotation moves the centre by 0.01²/2 of the runout.
+        assert!(apart <= 1e-5, "{apart:e}");
+        // The five others are found; the rotation keeps its start.
+        let pose = [1e-4, -1e-4, 5e-5, 0.0, 3e-3, -2e-3];
+        let found = array.estimate(&array.readings(&pose), nominal).unwrap();
+        assert!(found.residual <= 1e-12, "{found:?}");
+        if runout == 0.0 {
+            let others = [0, 1, 2, 4, 5].map(|i| (found.pose[i] - pose[i]).abs());
+            let worst = others.into_iter().fold(0.0, f64::max);
+            assert!(worst <= 1e-8, "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn an_array_refuses_what_it_cannot_solve() {
+    let array = two_loops();
+    let readings = array.readings(&POSE);
+    assert_eq!(
+        array.estimate(&readings[1..], POSE),
+        Err(ArrayError::OtherCount { found: 23, wanted: 24 })
+    );
+    let few = TelemeterArray { transceivers: array.transceivers[..2].to_vec(), ..array.clone() };
+    assert_eq!(few.estimate(&few.readings(&POSE), POSE), Err(ArrayError::TooFew { found: 4 }));
+    let not_finite = array.estimate(&[f64::NAN; 24], POSE);
+    assert!(matches!(not_finite, Err(ArrayError::NotFinite { .. })), "{not_finite:?}");
 }

@@ -78,3 +78,65 @@ fn sensors_have_columns_spectra_and_pictures() {
         assert!(with.starts_with(alone), "{with}\n{alone}");
     }
 }
+
+/// Sampling, filter and envelope act on spectra alone; defect lines are in the summary and in the pictures.
+#[test]
+fn acquisition_and_defect_lines_are_in_spectra_alone() {
+    let root = tempdir().unwrap();
+    let sensor = "[sensor.side]\nkind = \"accelerometer\"\non = \"outer_race\"\ndirection = \"fixed\"\n\
+                  azimuth = \"-45 deg\"\nsampling = \"2 kHz\"\nlow_pass = \"1.5 kHz\"\n\
+                  envelope_band = [\"100 Hz\", \"900 Hz\"]\n\n[numerics]";
+    let content = changed(&short("60 ms"), "[numerics]", sensor);
+    let path = write(root.path(), "a.toml", &content);
+    let out = root.path().join("out");
+    let checked = done(&["check", &path]);
+    assert!(
+        checked.contains("fixed direction, azimuth -45.00 deg, elevation 0.00 deg"),
+        "{checked}"
+    );
+    done(&["run", &path, "--out", &text(&out)]);
+    let written = files(&out);
+    for file in [
+        "spectrum_side_acceleration.csv",
+        "spectrum_side_acceleration_envelope.csv",
+        "spectrum_envelope_side.svg",
+        "spectrum_sensor_side.svg",
+    ] {
+        assert!(written.iter().any(|other| other == file), "{written:?}");
+    }
+    let spectrum = read(&out.join("spectrum.csv"));
+    assert!(spectrum.contains("top_acceleration") && !spectrum.contains("side_acceleration"));
+    let summary = json(&out.join("summary.json"));
+    let spectra = &summary["spectra"];
+    let side = &spectra["channels"]["side_acceleration"];
+    assert_eq!(side["sampling"]["value"], 2000.0, "{side}");
+    assert_eq!(side["low_pass"]["value"], 1500.0, "{side}");
+    assert!(spectra["channels"]["top_acceleration"]["low_pass"].is_null());
+    let envelope = &spectra["channels"]["side_acceleration_envelope"];
+    assert_eq!(envelope["envelope_band"][1]["value"], 900.0, "{envelope}");
+    // 11 balls: BPFO is 11 times FTF; the outer race does not rotate.
+    let lines = &spectra["lines"]["bearings"][0]["frequencies"];
+    let frequency = |name: &str| lines[name]["value"].as_f64().unwrap();
+    assert!((frequency("BPFO") / frequency("FTF") - 11.0).abs() <= 1e-9, "{lines}");
+    assert!((frequency("BPFO") + frequency("BPFI") - 11.0 * frequency("shaft")).abs() <= 1e-9);
+    assert!(lines["outer race"].is_null(), "{lines}");
+    let at = &side["lines"]["3 BPFO"];
+    let (bin, width) = (&at["bin_frequency"]["value"], &side["bin_width"]["value"]);
+    let off = (bin.as_f64().unwrap() - frequency("3 BPFO")) / width.as_f64().unwrap();
+    assert!(off.abs() <= 1.5 && at["amplitude"]["unit"] == "m/s^2", "{at}");
+    assert!(at["bins_from_nearest"].is_i64() && at["not_separated_from"].is_array(), "{at}");
+    let picture = read(&out.join("spectrum_sensor_top.svg"));
+    assert!(picture.contains("BPFI") && picture.contains("side lobes -31 dB"));
+
+    // The same rows, filtered or not; a run without these keys replaces the files.
+    let plain = content.replace("sampling = \"2 kHz\"\nlow_pass = \"1.5 kHz\"\n", "");
+    let plain = plain.replace("envelope_band = [\"100 Hz\", \"900 Hz\"]\n", "");
+    let rows = read(&out.join("series.csv"));
+    let path = write(root.path(), "b.toml", &plain);
+    done(&["run", &path, "--out", &text(&out)]);
+    assert_eq!(read(&out.join("series.csv")), rows);
+    let written = files(&out);
+    assert!(!written.iter().any(|file| file.contains("envelope")), "{written:?}");
+    assert!(!written.iter().any(|file| file == "spectrum_side_acceleration.csv"), "{written:?}");
+    assert!(read(&out.join("spectrum.csv")).contains("side_acceleration"));
+}

@@ -1,5 +1,7 @@
 //! Results: files, plots, comparison.
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../output_common/mod.rs"]
 mod output_common;
 

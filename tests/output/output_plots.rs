@@ -7,7 +7,8 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, BearingK
 use bearing_dynamics::output::pictures::bearing::{Picture, draw};
 use bearing_dynamics::output::plots::load_zone::LoadZoneBall;
 use bearing_dynamics::output::plots::{
-    Axis, Curve, LoadZone, PlotError, PolarPlot, Style, XyPlot, load_zone, polar, xy,
+    Axis, Curve, LoadZone, Mark, PlotError, PolarPlot, Style, XyPlot, load_zone, polar, xy,
+    xy_marked,
 };
 use bearing_dynamics::output::series::{Column, Series};
 use bearing_dynamics::output::table::RunTable;
@@ -306,6 +307,7 @@ fn loads_over_azimuth_are_drawn_where_the_ball_is() {
         bearings: vec![String::new()],
         bodies: Vec::new(),
         sensors: Vec::new(),
+        geometries: Vec::new(),
     };
     let drawn = draw(Picture::Polar, "A ball", &table).unwrap();
     let [(file, found)] = &drawn[..] else { panic!("{drawn:?}") };
@@ -316,4 +318,20 @@ fn loads_over_azimuth_are_drawn_where_the_ball_is() {
         ..polar_plot(vec![there])
     };
     assert_eq!((file.as_str(), found), ("polar.svg", &polar(&expected).unwrap()));
+}
+
+/// Marks within the axis are lines with labels; a label that would cover an earlier one is left out.
+#[test]
+fn marks_are_labelled_lines_within_the_axis() {
+    let plot = xy_plot(vec![Curve::new("computed", vec![[0.0, 0.0], [10.0, 3.0]])]);
+    let mark = |at: f64, label: &str| Mark { at, label: label.into() };
+    let (plain, marks) =
+        (xy(&plot).unwrap(), [mark(4.0, "BPFO"), mark(4.01, "hidden"), mark(11.0, "beyond")]);
+    let marked = xy_marked(&plot, &marks).unwrap();
+    let lines = |svg: &str| svg.matches("#969696").count();
+    assert_eq!((lines(&plain), lines(&marked)), (0, 2));
+    for (label, shown) in [("BPFO", true), ("hidden", false), ("beyond", false)] {
+        assert_eq!(marked.contains(label), shown, "{label}");
+    }
+    assert_eq!(xy_marked(&plot, &[]).unwrap(), plain);
 }

@@ -1,7 +1,7 @@
 //! Sensors: what they sit on, what they need, and what is refused.
 
 use bearing_dynamics::ch5_cage::telemeter::{copper_resistance, natural_frequency};
-use bearing_dynamics::members::sensor::SensorKind;
+use bearing_dynamics::members::sensor::{SensorKind, SensorMount};
 use bearing_dynamics::scene::build::sensors::{Direction, SceneSensorKind, SensorAt};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 
@@ -9,6 +9,8 @@ const CAGED: &str = include_str!("../../scenes/cage_telemeter.toml");
 const SHAFT: &str = include_str!("../../scenes/shaft_in_two_housings.toml");
 const STEPPED: &str = include_str!("../../scenes/stepped_rotor.toml");
 const QUASI_STATIC: &str = include_str!("../../scenes/housing_c_tet10.toml");
+const IN_ELEMENTS: &str = include_str!("../../scenes/rotor_in_elements.toml");
+const EXPLICIT: &str = include_str!("../../scenes/housing_impact.toml");
 const SOLID: &str = include_str!("../../scenes/cantilever.toml");
 
 fn understood(text: &str) -> Result<Subject, String> {
@@ -50,7 +52,7 @@ fn a_telemeter_fills_what_it_is_not_told() {
     // At the top, upwards.
     let assembly = scene.assembly().unwrap();
     let SensorKind::Accelerometer(of) = &assembly.sensors[1].kind else { panic!("{assembly:?}") };
-    assert_eq!(of.body, assembly.bearings[0].mounts[1].body);
+    assert_eq!(of.mount, SensorMount::Body(assembly.bearings[0].mounts[1].body));
     let [x, y, z] = of.place;
     assert!(x == 0.0 && y.abs() <= 1e-17 && z == 39.6e-3, "{:?}", of.place);
     assert!(of.direction[2] == 1.0 && of.direction[1].abs() <= 1e-15);
@@ -108,7 +110,42 @@ fn a_sensor_that_cannot_be_is_refused() {
             &["sensor.t.distance", "more than 0 mm"],
         ),
         (CAGED, &format!("{telemeter}\ncapacitance = \"100 uH\""), &["sensor.t.capacitance", "pF"]),
-        (STEPPED, &on("rotor"), &["sensor.a.on", "is flexible", "probe"]),
+        (STEPPED, &format!("{}\nat = \"2 m\"", on("rotor")), &["sensor.a.at", "is not on rotor"]),
+        (IN_ELEMENTS, &on("shaft"), &["sensor.a.on", "stepped in elements", "probe"]),
+        (EXPLICIT, &on("housing"), &["sensor.a.on", "needs its modes", "method = \"reduced\""]),
+        (
+            CAGED,
+            &format!("{}\nazimuth = \"3 deg\"", on("cage")),
+            &["sensor.a.azimuth", "direction = \"fixed\""],
+        ),
+        (
+            CAGED,
+            &format!("{}\nsampling = \"7 kHz\"", on("cage")),
+            &["sensor.a.sampling", "faster than the output rows, 6666.67 Hz"],
+        ),
+        (
+            CAGED,
+            &format!("{}\nlow_pass = \"3.4 kHz\"", on("cage")),
+            &["sensor.a.low_pass", "3333.33 Hz"],
+        ),
+        (
+            CAGED,
+            &format!("{}\nenvelope_band = [\"1 kHz\"]", on("cage")),
+            &["sensor.a.envelope_band", "two frequencies, not 1"],
+        ),
+        (
+            CAGED,
+            &format!(
+                "{}\nsampling = \"2 kHz\"\nenvelope_band = [\"0.5 kHz\", \"1.1 kHz\"]",
+                on("cage")
+            ),
+            &["sensor.a.envelope_band", "above half the sampling rate, 1000 Hz"],
+        ),
+        (
+            CAGED,
+            &format!("{}\nenvelope_band = [\"2 kHz\", \"1 kHz\"]", on("cage")),
+            &["sensor.a.envelope_band", "increas"],
+        ),
         (SOLID, &on("a"), &["sensor.a", "[[solid.probe]]"]),
     ] {
         let said = with(scene, sensors).expect_err(sensors);
@@ -123,4 +160,55 @@ fn a_sensor_that_cannot_be_is_refused() {
     };
     let SceneSensorKind::Accelerometer { at, .. } = scene.sensors[0].kind else { panic!() };
     assert_eq!(scene.name_of_place(at), "left.outer_race");
+}
+
+/// 0°, ±45° and 90° on the outer race, as in Fig. 5.31, and directions that stay.
+#[test]
+fn the_outer_race_carries_accelerometers_all_around() {
+    let angles = [0.0f64, 45.0, -45.0, 90.0];
+    let sensors: String = angles
+        .into_iter()
+        .enumerate()
+        .map(|(i, angle)| {
+            format!(
+                "[sensor.s{i}]\nkind = \"accelerometer\"\non = \"outer_race\"\nradius = \"39.6 mm\"\nangle = \"{angle} deg\"\n\
+                 [sensor.f{i}]\nkind = \"accelerometer\"\non = \"outer_race\"\ndirection = \"fixed\"\n\
+                 azimuth = \"{angle} deg\"\nelevation = \"30 deg\"\n"
+            )
+        })
+        .collect();
+    let Ok(Subject::Assembly(scene)) = with(CAGED, &sensors) else { panic!("refused") };
+    let assembly = scene.assembly().unwrap();
+    let accelerometer = |name: String| {
+        let of = assembly.sensors.iter().find(|of| of.name == name).unwrap();
+        let SensorKind::Accelerometer(of) = &of.kind else { panic!("{of:?}") };
+        of.clone()
+    };
+    for (i, angle) in angles.into_iter().enumerate() {
+        let (sin, cos) = angle.to_radians().sin_cos();
+        let near = |found: [f64; 3], expected: [f64; 3]| {
+            assert!((0..3).all(|k| (found[k] - expected[k]).abs() <= 1e-15), "{angle}: {found:?}");
+        };
+        let radial = accelerometer(format!("s{i}"));
+        near(radial.place, [0.0, 39.6e-3 * cos, 39.6e-3 * sin]);
+        near(radial.direction, [0.0, cos, sin]);
+        assert!(!radial.fixed);
+        let fixed = accelerometer(format!("f{i}"));
+        let out = 0.75f64.sqrt();
+        near(fixed.direction, [0.5, out * cos, out * sin]);
+        assert!(fixed.fixed);
+    }
+}
+
+#[test]
+fn a_sensor_on_a_flexible_shaft_is_on_its_section() {
+    let sensors =
+        "[sensor.a]\nkind = \"accelerometer\"\non = \"rotor\"\nat = \"50 mm\"\nradius = \"10 mm\"";
+    let Ok(Subject::Assembly(scene)) = with(STEPPED, sensors) else { panic!("refused") };
+    let assembly = scene.assembly().unwrap();
+    let SensorKind::Accelerometer(of) = &assembly.sensors[0].kind else { panic!() };
+    let SensorMount::Section(0, section) = &of.mount else { panic!("{of:?}") };
+    let centre = assembly.bodies[assembly.shafts[0].body].rest[0];
+    assert!((section.along + centre - 50e-3).abs() <= 1e-12, "{} {centre}", section.along);
+    assert_eq!(of.place, [0.0, 10e-3, 0.0]);
 }

@@ -20,7 +20,7 @@ use bearing_dynamics::output::summary::housing::seat_section;
 use bearing_dynamics::output::summary::solid::mesh_section;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::motion::dynamic_problem;
-use bearing_dynamics::scene::build::sensors::{SceneSensor, SceneSensorKind};
+use bearing_dynamics::scene::build::sensors::{Direction, SceneSensor, SceneSensorKind};
 use bearing_dynamics::scene::build::statics::static_problem;
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
 use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
@@ -114,7 +114,14 @@ fn sensors(scene: &AssemblyScene) -> Vec<(String, String)> {
                 1e3 * along,
                 1e3 * radius,
                 angle.to_degrees(),
-                direction.name()
+                match direction {
+                    Direction::Fixed { azimuth, elevation } => format!(
+                        "fixed direction, azimuth {:.2} deg, elevation {:.2} deg",
+                        azimuth.to_degrees(),
+                        elevation.to_degrees()
+                    ),
+                    other => other.name().to_string(),
+                }
             ),
             SceneSensorKind::Telemeter { circuit, distance, .. } => format!(
                 "telemeter, {:.4} mm from its transceiver, measured at {:.4} MHz, natural frequency {:.4} MHz",

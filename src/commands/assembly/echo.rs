@@ -15,7 +15,7 @@ use bearing_dynamics::scene::build::assembly::{
     PlacedHousing, SIX, SceneBeam, Spring, SpringAt, SpringEnd,
 };
 use bearing_dynamics::scene::build::motion::dynamic_problem;
-use bearing_dynamics::scene::build::sensors::{SceneSensor, SceneSensorKind};
+use bearing_dynamics::scene::build::sensors::{Direction, SceneSensor, SceneSensorKind};
 use bearing_dynamics::scene::resolve::housing_scene::{FitSize, HousingMethod, HousingSettings};
 use bearing_dynamics::solids::bore_equilibrium::Axial;
 use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
@@ -198,7 +198,7 @@ fn bushing(of: &BushingOfSpring) -> Result<Value, ResultsError> {
 
 fn sensors(scene: &AssemblyScene) -> Result<Value, ResultsError> {
     let mut all = Map::new();
-    for SceneSensor { name, kind } in &scene.sensors {
+    for SceneSensor { name, kind, acquisition } in &scene.sensors {
         let mut echo = match kind {
             SceneSensorKind::Accelerometer { at, along, radius, angle, direction } => json!({
                 "kind": "accelerometer",
@@ -229,6 +229,22 @@ fn sensors(scene: &AssemblyScene) -> Result<Value, ResultsError> {
             && let Some(of) = &scene.bearings[*bearing].name
         {
             echo["bearing"] = json!(of);
+        }
+        if let SceneSensorKind::Accelerometer { direction, .. } = kind
+            && let Direction::Fixed { azimuth, elevation } = direction
+        {
+            echo["azimuth"] = quantity("angle", azimuth.to_degrees(), "deg")?;
+            echo["elevation"] = quantity("angle", elevation.to_degrees(), "deg")?;
+        }
+        for (key, value) in [("sampling", acquisition.sampling), ("low_pass", acquisition.low_pass)]
+        {
+            if let Some(value) = value {
+                echo[key] = quantity(key, value, "Hz")?;
+            }
+        }
+        if let Some(band) = acquisition.envelope_band {
+            let [low, high] = band.map(|frequency| quantity("envelope_band", frequency, "Hz"));
+            echo["envelope_band"] = json!([low?, high?]);
         }
         all.insert(name.clone(), echo);
     }

@@ -8,7 +8,8 @@ use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::plan_step::note;
 use bearing_dynamics::assembly::lists::{Assembly, Bearing};
 use bearing_dynamics::assembly::plan::counts::Counts;
-use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::kinematics::vec3::{Vec3, dot, norm, sub};
+use bearing_dynamics::members::sensor::SensorKind;
 use bearing_dynamics::motion::reduced_start;
 use bearing_dynamics::motion::reduced_start::{add_housing, ball_frequency, put_in_equilibrium};
 use bearing_dynamics::motion::simulation::Start;
@@ -108,6 +109,7 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
             seat.label = Some(name.clone());
             seat.name = format!("the bore of housing {name}");
         }
+        place_sensors(&mut assembly, (index, housing), &reduction)?;
         reductions.push(reduction);
     }
     if from_equilibrium {
@@ -125,6 +127,39 @@ pub fn shapes(lists: &Lists, housings: &[Housing]) -> Fallible<Shapes> {
     let seconds = [condensing, start.elapsed().as_secs_f64()];
     let ran = bores.iter().map(|bore| bore.ran).collect();
     Ok(Shapes { presses, assembly, reductions, seconds, ran })
+}
+
+/// Gives accelerometers on a housing the modes at their nearest nodes.
+fn place_sensors(
+    assembly: &mut Assembly,
+    (solid, housing): (usize, &Housing),
+    reduction: &Reduction,
+) -> Fallible<()> {
+    let nodes = &housing.setup.model.problem.nodes;
+    for sensor in &mut assembly.sensors {
+        let SensorKind::Node(of) = &mut sensor.kind else { continue };
+        if of.bearing != housing.bearing {
+            continue;
+        }
+        let distance = |node: &Vec3| norm(sub(*node, of.place));
+        let nearest =
+            (0..nodes.len()).min_by(|a, b| distance(&nodes[*a]).total_cmp(&distance(&nodes[*b])));
+        let Some(node) = nearest else { continue };
+        let (far, edge) = (distance(&nodes[node]), housing.built.quality.longest_edge);
+        if far > edge {
+            return Err(format!(
+                "sensor.{}: the nearest node of the housing is {:.4} mm away, farther than the longest edge of the mesh, {:.4} mm; \
+                 correct at, radius and angle",
+                sensor.name,
+                1e3 * far,
+                1e3 * edge
+            )
+            .into());
+        }
+        let along = reduction.shapes.iter().map(|shape| dot(shape[node], of.direction));
+        of.modes = Some((solid, along.collect()));
+    }
+    Ok(())
 }
 
 /// Adds a hint to the error of a start in equilibrium, if an outer race can slide.

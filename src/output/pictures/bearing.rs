@@ -1,10 +1,11 @@
 //! Plots of a run with bearings.
 
 use crate::numeric::clock::to_digits;
+use crate::output::defect_lines::{BearingLines, DefectLine, lines_for};
 use crate::output::plots::{
-    Axis, Curve, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy,
+    Axis, Curve, Mark, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy, xy_marked,
 };
-use crate::output::spectrum::{Spectrum, WINDOW};
+use crate::output::spectrum::{MAIN_LOBE, SIDE_LOBES, Spectrum, WINDOW};
 use crate::output::table::{Moving, RunTable};
 
 /// Plots that a run can draw.
@@ -96,11 +97,11 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
         let file = format!("series_{prefix}loads.svg");
         add_series(&mut drawn, file, heading, "normal load", "N", curves)?;
     }
-    for (name, column) in &table.sensors {
-        let quantity = column.strip_prefix(name.as_str()).map_or("", |of| &of[1..]);
+    for sensor in &table.sensors {
+        let (name, column) = (&sensor.name, &sensor.column);
         let curves = over_time(table, &[(column, name)], 1.0);
         let (file, heading) = (format!("series_sensor_{name}.svg"), format!("{title}: {name}"));
-        add_series(&mut drawn, file, heading, quantity, table.unit(column), curves)?;
+        add_series(&mut drawn, file, heading, sensor.quantity(), table.unit(column), curves)?;
     }
     let residuals =
         [("energy_coupled_residual", "of all parts"), ("energy_residual", "of bearings")];
@@ -205,7 +206,14 @@ fn run_ups(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
 fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotError> {
     let spectra = table.spectra();
     let Some((_, first)) = spectra.first() else { return Ok(Vec::new()) };
-    let axis = format!("frequency ({WINDOW} window, bin {} Hz)", to_digits(first.bin_width, 4));
+    let axis_of = |spectrum: &Spectrum| {
+        let bin = to_digits(spectrum.bin_width, 4);
+        format!(
+            "frequency ({WINDOW} window, bin {bin} Hz, main lobe {MAIN_LOBE} bins, side lobes {SIDE_LOBES} dB)"
+        )
+    };
+    let axis = axis_of(first);
+    let lines = table.defect_lines();
     let mut drawn = Vec::new();
     for Moving { column: body, title: name, .. } in &table.bodies {
         let mut curves = Vec::new();
@@ -215,19 +223,45 @@ fn spectra(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
             curves.extend(lines_of(coordinate, spectrum, 1e6));
         }
         let what = format!("the {name}");
-        add_spectrum(&mut drawn, (title, &what, name), &axis, ("amplitude", "um"), curves)?;
+        let marks = marks(&lines, body);
+        add_spectrum(&mut drawn, (title, &what, name), &axis, ("amplitude", "um"), curves, &marks)?;
     }
-    for (name, column) in &table.sensors {
-        let Some((_, spectrum)) = spectra.iter().find(|(channel, _)| channel == column) else {
-            continue;
+    for sensor in &table.sensors {
+        let (name, unit) = (&sensor.name, table.unit(&sensor.column));
+        let marks = marks(&lines, &sensor.column);
+        let filter = sensor.acquisition.low_pass;
+        let filter = filter.map(|cut_off| format!(", low-pass at {} Hz", to_digits(cut_off, 4)));
+        let filter = filter.unwrap_or_default();
+        let spectrum_of = |wanted: &str| spectra.iter().find(|(channel, _)| channel == wanted);
+        let mut add = |channel: &str, what: &str, file: String, quantity: String| {
+            let Some((_, spectrum)) = spectrum_of(channel) else { return Ok(()) };
+            let curves = lines_of(name, spectrum, 1.0).into_iter().collect();
+            let axis = axis_of(spectrum);
+            let what = format!("{what}{filter}");
+            add_spectrum(
+                &mut drawn,
+                (title, &what, &file),
+                &axis,
+                (&quantity, unit),
+                curves,
+                &marks,
+            )
         };
-        let quantity = column.strip_prefix(name.as_str()).map_or("", |of| &of[1..]);
-        let of = (quantity, table.unit(column));
-        let curves = lines_of(name, spectrum, 1.0).into_iter().collect();
-        let file = format!("sensor_{name}");
-        add_spectrum(&mut drawn, (title, name, &file), &axis, of, curves)?;
+        add(&sensor.column, name, format!("sensor_{name}"), sensor.quantity().into())?;
+        let Some([low, high]) = sensor.acquisition.envelope_band else { continue };
+        let [low, high] = [low, high].map(|frequency| to_digits(frequency, 4));
+        let what = format!("the envelope of {name}, {low} to {high} Hz");
+        let quantity = format!("envelope of {}", sensor.quantity());
+        add(&sensor.envelope(), &what, format!("envelope_{name}"), quantity)?;
     }
     Ok(drawn)
+}
+
+/// Defect lines for the spectrum of a channel: of its bearing, or of all bearings. The lowest orders first.
+fn marks(lines: &[BearingLines], channel: &str) -> Vec<Mark> {
+    let mut lines: Vec<&DefectLine> = lines_for(lines, channel).collect();
+    lines.sort_by_key(|line| line.order);
+    lines.into_iter().map(|line| Mark { at: line.frequency, label: line.label() }).collect()
 }
 
 /// Amplitudes times `scale` over frequency, without bins that are rounding.
@@ -248,17 +282,19 @@ fn add_spectrum(
     frequency: &str,
     (quantity, unit): (&str, &str),
     curves: Vec<Curve>,
+    marks: &[Mark],
 ) -> Result<(), PlotError> {
     if curves.is_empty() {
         return Ok(());
     }
-    let svg = xy(&XyPlot {
+    let plot = XyPlot {
         title: format!("{title}: spectrum of {what}"),
         x: Axis::log(frequency, "Hz"),
         y: Axis::log(quantity, unit),
         style: Style::Lines,
         curves,
-    })?;
+    };
+    let svg = xy_marked(&plot, marks)?;
     drawn.push((format!("spectrum_{}.svg", name.replace(' ', "_")), svg));
     Ok(())
 }

@@ -12,6 +12,9 @@ pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub const WIDTH: u32 = 900;
 pub const BLACK_TEXT: RGBColor = RGBColor(30, 30, 30);
 pub const GRID: RGBColor = RGBColor(222, 222, 222);
+/// Vertical lines at marked values, and their labels.
+pub const MARK: RGBColor = RGBColor(150, 150, 150);
+pub const MARK_TEXT: RGBColor = RGBColor(90, 90, 90);
 /// Text sizes at a width of 900 px; at 700 px the smallest text is 13 px high.
 const TITLE_SIZE: i32 = 25;
 pub const TEXT_SIZE: i32 = 21;

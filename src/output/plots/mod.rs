@@ -21,7 +21,7 @@ pub use canvas::{COLOURS, colour};
 pub use load_zone::{LoadZone, load_zone};
 pub use orbit::{OrbitPlot, orbit};
 pub use polar::{PolarPlot, polar};
-pub use xy::{Axis, Style, XyPlot, xy};
+pub use xy::{Axis, Mark, Style, XyPlot, xy, xy_marked};
 
 use thiserror::Error;
 

@@ -1,6 +1,6 @@
 //! Curves over two axes.
 
-use crate::output::plots::canvas::{self, Align, BLACK_TEXT, GRID, Legend, Point};
+use crate::output::plots::canvas::{self, Align, Area, BLACK_TEXT, GRID, Legend, Point};
 use crate::output::plots::ticks::{self, Scale};
 use crate::output::plots::{Curve, PlotError, check_curves};
 
@@ -46,6 +46,13 @@ pub struct XyPlot {
     pub curves: Vec<Curve>,
 }
 
+/// Labelled vertical line at a value of x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    pub at: f64,
+    pub label: String,
+}
+
 const LEFT: i32 = 115;
 const RIGHT: i32 = 870;
 const TOP: i32 = 60;
@@ -69,6 +76,19 @@ const BOTTOM: i32 = 500;
 /// assert!(svg.unwrap().contains("moment [N m]"));
 /// ```
 pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
+    xy_marked(plot, &[])
+}
+
+/// Size of the labels of marks, px, and the smallest distance between two of them.
+const MARK_SIZE: i32 = 15;
+const MARK_GAP: i32 = 17;
+
+/// As [`xy()`], with thin vertical lines behind the curves. Marks beyond the axis are omitted. A label that would cover
+/// that of an earlier mark is omitted, its line is not.
+///
+/// # Errors
+/// As [`xy()`].
+pub fn xy_marked(plot: &XyPlot, marks: &[Mark]) -> Result<String, PlotError> {
     check_curves(&plot.title, &plot.curves)?;
     let x = scale(&plot.x, &plot.curves, 0, 7)?;
     let y = scale(&plot.y, &plot.curves, 1, 6)?;
@@ -88,6 +108,7 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
             canvas::line(area, vec![(LEFT, row), (RIGHT, row)], GRID, 1)?;
             canvas::text(area, label, (LEFT - 10, row), size, Align::Right, BLACK_TEXT)?;
         }
+        mark(area, &x, marks)?;
         let corners = vec![(LEFT, TOP), (LEFT, BOTTOM), (RIGHT, BOTTOM)];
         canvas::line(area, corners, BLACK_TEXT, 2)?;
         let at = (middle, BOTTOM + 50);
@@ -119,6 +140,26 @@ pub fn xy(plot: &XyPlot) -> Result<String, PlotError> {
             (style != Style::Markers, style != Style::Lines)
         })
     })
+}
+
+fn mark(area: &Area, x: &Scale, marks: &[Mark]) -> Result<(), PlotError> {
+    let mut labelled: Vec<i32> = Vec::new();
+    for mark in marks {
+        let position = x.position(mark.at);
+        if !(0.0..=1.0).contains(&position) {
+            continue;
+        }
+        let column = across(position);
+        canvas::line(area, vec![(column, TOP), (column, BOTTOM)], canvas::MARK, 1)?;
+        if labelled.iter().all(|other| (other - column).abs() >= MARK_GAP) {
+            labelled.push(column);
+            // Centred on the column, so that the line passes through the middle of the label: beside it instead.
+            let length = 8 * mark.label.chars().count() as i32;
+            let at = (column - MARK_SIZE / 2, TOP + 4 + length / 2);
+            canvas::text(area, &mark.label, at, MARK_SIZE, Align::Upwards, canvas::MARK_TEXT)?;
+        }
+    }
+    Ok(())
 }
 
 fn scale(

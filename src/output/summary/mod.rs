@@ -5,16 +5,20 @@ pub mod housing;
 pub mod rubber;
 pub mod solid;
 
+use crate::members::sensor::Acquisition;
 use crate::motion::error_control::SHARE;
 use crate::motion::simulation::{Integrator, Simulation, Stepping};
 use crate::numeric::clock::rounded;
 use crate::output::atomic::write_atomic;
+use crate::output::defect_lines::{
+    BearingLines, DefectLine, NOISE_BINS, lines_for, overlap, read_line,
+};
 use crate::output::results::{ResultsError, RunRecord, insert_record, pretty, quantity};
 use crate::output::series::{Column, Series, columns_path};
 use crate::output::session::{Motion, Session, Status};
 use crate::output::spectrum::{LEAKAGE, LOWEST, Spectrum, WINDOW, peaks};
 use crate::output::state::SERIES;
-use crate::output::table::RunTable;
+use crate::output::table::{RunTable, SensorChannel};
 use crate::solids::explicit::SolidStepping;
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
@@ -60,8 +64,8 @@ pub fn write_run_results(
     }
     table.series.write_npy(&npy)?;
     let mut written = vec![csv, columns_path(&npy), npy];
-    if let Some(series) = spectrum_series(table, spectra)? {
-        let path = folder.join("spectrum.csv");
+    for (name, series) in spectrum_series(table, spectra)? {
+        let path = folder.join(name);
         series.write_csv(&path)?;
         written.push(path);
     }
@@ -78,12 +82,29 @@ fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {
     Ok(Series::new(table.series.columns().to_vec(), data)?)
 }
 
-/// One row per bin: frequency, then the amplitude of each channel.
+/// Files with one row per bin: frequency, then amplitudes. `spectrum.csv` has all channels with the bins of the first one,
+/// every other channel a file of its own.
 fn spectrum_series(
     table: &RunTable,
     spectra: &[(String, Spectrum)],
-) -> Result<Option<Series>, ResultsError> {
-    let Some((_, first)) = spectra.first() else { return Ok(None) };
+) -> Result<Vec<(String, Series)>, ResultsError> {
+    let Some((_, first)) = spectra.first() else { return Ok(Vec::new()) };
+    let bins = |of: &Spectrum| (of.amplitude.len(), of.bin_width);
+    let (common, own): (Vec<_>, Vec<_>) =
+        spectra.iter().partition(|(_, of)| bins(of) == bins(first));
+    let mut files = vec![("spectrum.csv".to_string(), spectra_together(table, &common)?)];
+    for of in own {
+        files.push((format!("spectrum_{}.csv", of.0), spectra_together(table, &[of])?));
+    }
+    Ok(files)
+}
+
+/// Spectra with the same bins.
+fn spectra_together(
+    table: &RunTable,
+    spectra: &[&(String, Spectrum)],
+) -> Result<Series, ResultsError> {
+    let first = &spectra[0].1;
     let mut columns = vec![Column::new("frequency", "Hz")];
     columns.extend(spectra.iter().map(|(name, _)| Column::new(name.clone(), table.unit(name))));
     let bins = first.amplitude.len();
@@ -91,7 +112,7 @@ fn spectrum_series(
         0 => bin as f64 * first.bin_width,
         _ => spectra[column - 1].1.amplitude[bin],
     });
-    Ok(Some(Series::new(columns, data)?))
+    Ok(Series::new(columns, data)?)
 }
 
 /// Content of `summary.json`.
@@ -320,11 +341,14 @@ fn spectra_section(
 ) -> Result<Value, ResultsError> {
     let mut channels = Map::new();
     let bin_width = spectra.first().map_or(0.0, |(_, spectrum)| spectrum.bin_width);
+    let lines = table.defect_lines();
     for (name, spectrum) in spectra {
         let unit = table.unit(name);
+        let sensor = table.sensor(name);
+        let column = sensor.map_or(name, |of| &of.column);
         // The rounding of a sensor is proportional to its mean magnitude.
         let magnitude =
-            || table.windowed(name).into_iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+            || table.windowed(column).into_iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
         let floor = if unit == "m" { floor } else { SENSOR_ROUNDING * magnitude() };
         let found: Result<Vec<Value>, ResultsError> = peaks(spectrum, PEAKS, floor)
             .into_iter()
@@ -337,9 +361,17 @@ fn spectra_section(
                 }))
             })
             .collect();
-        channels.insert(name.clone(), json!({ "peaks": found? }));
+        let mut channel = json!({ "peaks": found? });
+        if let Some(sensor) = sensor {
+            acquisition(&mut channel, table, sensor, (name, spectrum))?;
+        }
+        let at_lines = line_readings(&lines, (name, spectrum), unit)?;
+        if !at_lines.is_empty() {
+            channel["lines"] = Value::Object(at_lines);
+        }
+        channels.insert(name.clone(), channel);
     }
-    Ok(json!({
+    let mut section = json!({
         "window": WINDOW,
         "leakage": LEAKAGE,
         "rows": table.window.len(),
@@ -347,5 +379,98 @@ fn spectra_section(
         "lowest_peak": quantity("lowest peak", floor, "m")?,
         "lowest_peak_of_highest": LOWEST,
         "channels": channels,
+    });
+    if !lines.is_empty() {
+        section["lines"] = lines_section(&lines)?;
+    }
+    Ok(section)
+}
+
+/// Adds what a sensor's spectrum was made from, where it is not the recorded column.
+fn acquisition(
+    channel: &mut Value,
+    table: &RunTable,
+    sensor: &SensorChannel,
+    (name, spectrum): (&str, &Spectrum),
+) -> Result<(), ResultsError> {
+    let Acquisition { sampling, low_pass, envelope_band } = sensor.acquisition;
+    if sampling.is_some()
+        && let Some(signal) = table.acquired(sensor)
+    {
+        channel["sampling"] = quantity("sampling", 1.0 / signal.interval, "Hz")?;
+        channel["samples"] = json!(signal.values.len());
+        channel["bin_width"] = quantity("bin_width", spectrum.bin_width, "Hz")?;
+    }
+    if let Some(cut_off) = low_pass {
+        channel["low_pass"] = quantity("low_pass", cut_off, "Hz")?;
+        channel["filter"] = json!("causal Butterworth of order 2, once per output row");
+    }
+    if let Some(band) = envelope_band.filter(|_| *name == *sensor.envelope()) {
+        let [low, high] = band.map(|frequency| quantity("envelope_band", frequency, "Hz"));
+        channel["envelope_band"] = json!([low?, high?]);
+        channel["envelope"] = json!("magnitude of the analytic signal in the band");
+    }
+    Ok(())
+}
+
+/// Amplitudes of a spectrum at the defect lines of its bearing, or of all bearings.
+fn line_readings(
+    lines: &[BearingLines],
+    (name, spectrum): (&str, &Spectrum),
+    unit: &str,
+) -> Result<Map<String, Value>, ResultsError> {
+    let mut readings = Map::new();
+    let own: Vec<&DefectLine> = lines_for(lines, name).collect();
+    for line in &own {
+        let Some(found) = read_line(spectrum, line.frequency) else { continue };
+        let bin_frequency = found.bin as f64 * spectrum.bin_width;
+        let mut reading = json!({
+            "amplitude": quantity("amplitude", found.amplitude, unit)?,
+            "bin_frequency": quantity("frequency", bin_frequency, "Hz")?,
+            "bins_from_nearest": found.offset,
+        });
+        if let Some(noise) = found.noise {
+            reading["median_around"] = quantity("amplitude", noise, unit)?;
+        }
+        let near = |other: &&&DefectLine| {
+            **other != *line && overlap(line.frequency, other.frequency, spectrum.bin_width)
+        };
+        let near: Vec<String> = own.iter().filter(near).map(|other| other.label()).collect();
+        if !near.is_empty() {
+            reading["not_separated_from"] = json!(near);
+        }
+        readings.insert(line.label(), reading);
+    }
+    Ok(readings)
+}
+
+/// Frequencies of the defect lines, and the means from which they follow.
+fn lines_section(lines: &[BearingLines]) -> Result<Value, ResultsError> {
+    let mut bearings = Vec::new();
+    for of in lines {
+        let mut frequencies = Map::new();
+        for line in &of.lines {
+            frequencies.insert(line.label(), quantity("frequency", line.frequency, "Hz")?);
+        }
+        let mut bearing = json!({
+            "inner_race_speed": quantity("speed", of.speeds[0], "rad/s")?,
+            "outer_race_speed": quantity("speed", of.speeds[1], "rad/s")?,
+            "change_of_speed": quantity("change", of.speed_change, "1")?,
+            "contact_angle": quantity("contact angle", of.contact_angle.to_degrees(), "deg")?,
+            "contact_angle_is": of.angle_is,
+            "frequencies": frequencies,
+        });
+        if let Some(name) = of.prefix.strip_suffix('_') {
+            bearing["bearing"] = json!(name);
+        }
+        bearings.push(bearing);
+    }
+    Ok(json!({
+        "are": "kinematic frequencies of pure rolling at the mean speeds over the window",
+        "amplitude_is": "highest of the bin nearest to the line and its two neighbours; bins_from_nearest tells which",
+        "median_around_is": format!(
+            "median amplitude of up to {NOISE_BINS} bins on each side, without the three next to the line"
+        ),
+        "bearings": bearings,
     }))
 }

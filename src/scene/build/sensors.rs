@@ -2,7 +2,10 @@
 
 use crate::assembly::lists::Assembly;
 use crate::ch5_cage::telemeter::Telemeter;
-use crate::members::sensor::{Accelerometer, CageTelemeter, Sensor, SensorKind};
+use crate::kinematics::vec3::Vec3;
+use crate::members::sensor::{
+    Accelerometer, Acquisition, CageTelemeter, NodeAccelerometer, Sensor, SensorKind, SensorMount,
+};
 use crate::scene::build::assembly::AssemblyScene;
 use crate::scene::tables::assembly::OWN_RACES;
 
@@ -10,6 +13,7 @@ use crate::scene::tables::assembly::OWN_RACES;
 pub struct SceneSensor {
     pub name: String,
     pub kind: SceneSensorKind,
+    pub acquisition: Acquisition,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -44,24 +48,45 @@ pub enum SensorAt {
     Race { bearing: usize, side: usize },
     /// Cage of this bearing.
     Cage(usize),
+    /// Reduced housing of this bearing.
+    Housing(usize),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Measured direction of an accelerometer.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Direction {
     Radial,
     Tangential,
     Axial,
+    /// In the scene's axes, not rotating: azimuth from +Y towards +Z and elevation towards +X, rad.
+    Fixed {
+        azimuth: f64,
+        elevation: f64,
+    },
 }
 
 impl Direction {
-    pub const ALL: [Direction; 3] = [Direction::Radial, Direction::Tangential, Direction::Axial];
-
     /// Name in scenes.
     pub const fn name(self) -> &'static str {
         match self {
             Direction::Radial => "radial",
             Direction::Tangential => "tangential",
             Direction::Axial => "axial",
+            Direction::Fixed { .. } => "fixed",
+        }
+    }
+
+    /// Unit vector for a sensor at this azimuth, rad.
+    fn vector(self, angle: f64) -> Vec3 {
+        let (sin, cos) = libm::sincos(angle);
+        match self {
+            Direction::Radial => [0.0, cos, sin],
+            Direction::Tangential => [0.0, -sin, cos],
+            Direction::Axial => [1.0, 0.0, 0.0],
+            Direction::Fixed { azimuth, elevation } => {
+                let ((up, out), (sin, cos)) = (libm::sincos(elevation), libm::sincos(azimuth));
+                [up, out * cos, out * sin]
+            }
         }
     }
 }
@@ -77,6 +102,7 @@ impl AssemblyScene {
             SensorAt::Body(body) => self.bodies[body].name.clone(),
             SensorAt::Race { bearing, side } => format!("{}{}", of(bearing), OWN_RACES[side]),
             SensorAt::Cage(bearing) => format!("{}cage", of(bearing)),
+            SensorAt::Housing(bearing) => format!("{}housing", of(bearing)),
         }
     }
 }
@@ -86,25 +112,10 @@ impl SceneSensor {
     pub(crate) fn of(&self, assembly: &Assembly) -> Sensor {
         let kind = match self.kind {
             SceneSensorKind::Accelerometer { at, along, radius, angle, direction } => {
-                let bearing = |index: usize| &assembly.bearings[index];
-                let body = match at {
-                    SensorAt::Body(body) => body,
-                    SensorAt::Race { bearing: of, side } => bearing(of).mounts[side].body,
-                    // A missing cage is refused when the scene is read.
-                    SensorAt::Cage(of) => bearing(of).cage.as_ref().map_or(0, |cage| cage.body),
-                };
                 let (sin, cos) = libm::sincos(angle);
                 let place = [along, radius * cos, radius * sin];
-                let direction = match direction {
-                    Direction::Radial => [0.0, cos, sin],
-                    Direction::Tangential => [0.0, -sin, cos],
-                    Direction::Axial => [1.0, 0.0, 0.0],
-                };
-                // The cage of a reversed bearing starts half a turn about Z away.
-                let turned = matches!(at, SensorAt::Cage(of) if bearing(of).mounts[1].reversed);
-                let own = |[x, y, z]: [f64; 3]| if turned { [-x, -y, z] } else { [x, y, z] };
-                let (place, direction) = (own(place), own(direction));
-                SensorKind::Accelerometer(Accelerometer { body, place, direction })
+                let fixed = matches!(direction, Direction::Fixed { .. });
+                accelerometer(assembly, at, (place, direction.vector(angle)), fixed)
             }
             SceneSensorKind::Telemeter { bearing, circuit, distance, offset, runout } => {
                 let [offset, runout] = [offset, runout].map(|[far, angle]| {
@@ -114,6 +125,42 @@ impl SceneSensor {
                 SensorKind::Telemeter(CageTelemeter { bearing, circuit, distance, offset, runout })
             }
         };
-        Sensor { name: self.name.clone(), kind }
+        Sensor { name: self.name.clone(), kind, acquisition: self.acquisition }
     }
+}
+
+/// Accelerometer at a position from its mount's centre (m) along a unit vector, both in the scene's axes at the start.
+fn accelerometer(
+    assembly: &Assembly,
+    at: SensorAt,
+    (mut place, mut direction): (Vec3, Vec3),
+    fixed: bool,
+) -> SensorKind {
+    let bearing = |index: usize| &assembly.bearings[index];
+    let body = match at {
+        SensorAt::Body(body) => body,
+        SensorAt::Race { bearing: of, side } => bearing(of).mounts[side].body,
+        // A missing cage is refused when the scene is read.
+        SensorAt::Cage(of) => bearing(of).cage.as_ref().map_or(0, |cage| cage.body),
+        SensorAt::Housing(bearing) => {
+            place[0] += assembly.place_of(&assembly.bearings[bearing]);
+            let of = NodeAccelerometer { bearing, place, direction, modes: None };
+            return SensorKind::Node(of);
+        }
+    };
+    if let Some(index) = assembly.shafts.iter().position(|shaft| shaft.body == body) {
+        let along = place[0] - assembly.origin_of(body);
+        place[0] = 0.0;
+        let section = Box::new(assembly.shafts[index].shapes.section(along));
+        let mount = SensorMount::Section(index, section);
+        return SensorKind::Accelerometer(Accelerometer { mount, place, direction, fixed });
+    }
+    // The cage of a reversed bearing starts half a turn about Z away.
+    if matches!(at, SensorAt::Cage(of) if bearing(of).mounts[1].reversed) {
+        let own = |[x, y, z]: Vec3| [-x, -y, z];
+        place = own(place);
+        direction = if fixed { direction } else { own(direction) };
+    }
+    let mount = SensorMount::Body(body);
+    SensorKind::Accelerometer(Accelerometer { mount, place, direction, fixed })
 }

@@ -1,19 +1,24 @@
 //! From the keys of sensors to their mounts and readings.
 
 use crate::ch5_cage::telemeter::{Telemeter, copper_resistance, natural_frequency};
+use crate::members::sensor::Acquisition;
+use crate::numeric::clock::to_digits;
 use crate::scene::build::assembly::{AssemblyScene, Carrier};
 use crate::scene::build::sensors::{Direction, SceneSensor, SceneSensorKind, SensorAt};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::{Reader, text};
 use crate::scene::resolve::housing_scene::HousingMethod;
 use crate::scene::resolve::resolved::CageInRun;
+use crate::scene::resolve::shaft::beside;
 use crate::scene::tables::keys::nearest;
 use crate::scene::tables::sensor::SENSORS;
 use crate::scene::text::document::Document;
 use crate::scene::text::scopes::no_such;
+use crate::scene::text::value::Checked;
 
 /// Keys of accelerometers only.
-const OF_AN_ACCELEROMETER: [&str; 5] = ["on", "at", "radius", "angle", "direction"];
+const OF_AN_ACCELEROMETER: [&str; 7] =
+    ["on", "at", "radius", "angle", "direction", "azimuth", "elevation"];
 const OF_A_TELEMETER: [&str; 12] = [
     "bearing",
     "distance",
@@ -91,8 +96,49 @@ fn sensor(
         true => telemeter(&mut reader, scene)?,
         false => accelerometer(&mut reader, scene)?,
     };
+    let acquisition = acquisition(&mut reader, scene)?;
     reader.note_named(&mut scene.defaults_used);
-    Ok(SceneSensor { name: name.into(), kind })
+    Ok(SceneSensor { name: name.into(), kind, acquisition })
+}
+
+/// Sampling, filter and envelope of a sensor, checked against the rate of the output rows.
+fn acquisition(reader: &mut Reader, scene: &AssemblyScene) -> Result<Acquisition, SceneError> {
+    let rows = scene.run().map_or(f64::INFINITY, |run| 1.0 / run.output_interval);
+    let [sampling, low_pass] =
+        ["sensor.sampling", "sensor.low_pass"].map(|key| reader.given_number(key));
+    let refuse =
+        |key: &str, reason: String, advice: &str| Err(reader.document.refused(key, reason, advice));
+    let hertz = |frequency: f64| format!("{} Hz", to_digits(frequency, 6));
+    if let Some(rate) = sampling.filter(|rate| *rate > rows * (1.0 + 1e-9)) {
+        let reason = format!("{} is faster than the output rows, {}", hertz(rate), hertz(rows));
+        let advice = "sample more slowly, or shorten numerics.output_interval";
+        return refuse("sensor.sampling", reason, advice);
+    }
+    if let Some(cut_off) = low_pass.filter(|cut_off| *cut_off >= 0.5 * rows) {
+        let half = hertz(0.5 * rows);
+        let reason =
+            format!("{} is not below half the rate of the output rows, {half}", hertz(cut_off));
+        let advice = "filter lower, or shorten numerics.output_interval";
+        return refuse("sensor.low_pass", reason, advice);
+    }
+    let envelope_band = match reader.document.value("sensor.envelope_band") {
+        Some(Checked::Quantities(band)) => match band[..] {
+            [low, high] if high <= 0.5 * sampling.unwrap_or(rows) => Some([low, high]),
+            [_, high] => {
+                let half = hertz(0.5 * sampling.unwrap_or(rows));
+                let reason = format!("{} is above half the sampling rate, {half}", hertz(high));
+                let advice = "choose a lower band, or sample faster";
+                return refuse("sensor.envelope_band", reason, advice);
+            }
+            _ => {
+                let reason = format!("a band has two frequencies, not {}", band.len());
+                let advice = "write envelope_band = [\"1 kHz\", \"4 kHz\"]";
+                return refuse("sensor.envelope_band", reason, advice);
+            }
+        },
+        _ => None,
+    };
+    Ok(Acquisition { sampling, low_pass, envelope_band })
 }
 
 fn accelerometer(
@@ -106,20 +152,53 @@ fn accelerometer(
     let Some((_, at)) = places.iter().find(|(name, _)| *name == on) else {
         return Err(reader.document.error("sensor.on", no_such_place(&on, &places)));
     };
-    if let SensorAt::Body(body) = at
-        && scene.bodies[*body].beam.is_some()
+    if matches!(at, SensorAt::Housing(_)) && scene.housing_method() != Some(HousingMethod::Reduced)
     {
-        let reason = format!("{on} is flexible: an accelerometer is mounted on a rigid body");
-        let advice = "record its sections with `probe` in its beam, or put the sensor on a race or a housing's race";
+        let reason = "an accelerometer on a housing needs its modes";
+        let advice = "write method = \"reduced\" in [housing], or put the sensor on the outer race";
         return Err(reader.document.refused("sensor.on", reason, advice));
     }
     let mut number = |key: &str| reader.number(key).unwrap_or(0.0);
     let (along, radius) = (number("sensor.at"), number("sensor.radius"));
     let angle = number("sensor.angle");
-    let direction = reader.choice("sensor.direction");
-    let direction = Direction::ALL.into_iter().find(|of| Some(of.name()) == direction);
-    let direction = direction.unwrap_or(Direction::Radial);
+    if let SensorAt::Body(body) = at
+        && let Some(beam) = &scene.bodies[*body].beam
+    {
+        if beam.in_elements.is_some() {
+            let reason = format!("{on} is stepped in elements, which carry no accelerometer");
+            let advice =
+                "record its sections with `probe`, or write method = \"reduced\" in its beam.mesh";
+            return Err(reader.document.refused("sensor.on", reason, advice));
+        }
+        let ends = [beam.start, beam.start + beam.beam.length()];
+        if let Some(problem) = beside(along, ends, &on) {
+            return Err(reader.document.error("sensor.at", problem));
+        }
+    }
+    let direction = direction(reader)?;
     Ok(SceneSensorKind::Accelerometer { at: *at, along, radius, angle, direction })
+}
+
+fn direction(reader: &mut Reader) -> Result<Direction, SceneError> {
+    const ANGLES: [&str; 2] = ["sensor.azimuth", "sensor.elevation"];
+    let direction = match reader.choice("sensor.direction") {
+        Some("fixed") => {
+            let [azimuth, elevation] =
+                ANGLES.map(|key| reader.given_number(key).unwrap_or_default());
+            return Ok(Direction::Fixed { azimuth, elevation });
+        }
+        Some("tangential") => Direction::Tangential,
+        Some("axial") => Direction::Axial,
+        _ => Direction::Radial,
+    };
+    match ANGLES.into_iter().find(|key| reader.is_given(key)) {
+        None => Ok(direction),
+        Some(key) => {
+            let reason = "the direction of this sensor rotates with its body";
+            let advice = "write direction = \"fixed\", or leave it out";
+            Err(reader.document.refused(key, reason, advice))
+        }
+    }
 }
 
 /// Mounts of sensors, by their names in scenes.
@@ -135,6 +214,9 @@ fn places(scene: &AssemblyScene) -> Vec<(String, SensorAt)> {
         }
         if matches!(dynamics.cage, CageInRun::Body(_)) {
             places.push(SensorAt::Cage(bearing));
+        }
+        if placed.housing.is_some() {
+            places.push(SensorAt::Housing(bearing));
         }
     }
     places.into_iter().map(|at| (scene.name_of_place(at), at)).collect()

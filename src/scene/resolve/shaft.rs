@@ -135,7 +135,7 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
 }
 
 /// Problem of a position that is not between the ends of a shaft (m); `None` if it is.
-fn beside(at: f64, [start, end]: [f64; 2], of: &str) -> Option<Problem> {
+pub(crate) fn beside(at: f64, [start, end]: [f64; 2], of: &str) -> Option<Problem> {
     // Within the tolerance of stations.
     let room = 1e-9 * (end - start);
     if start - room <= at && at <= end + room {

@@ -102,7 +102,8 @@ impl Recorder {
         let sensors = &system.assembly.sensors;
         if !sensors.is_empty() {
             self.ran.add(Stage::Sensors, 1);
-            self.values.extend(sensors.iter().map(|of| of.read(system, simulation.rates())));
+            let (state, rates) = (&simulation.state, simulation.rates());
+            self.values.extend(sensors.iter().map(|of| of.read(system, state, rates)));
         }
         self.bearing = Some(BearingColumns { groups, terms });
     }
