@@ -172,8 +172,7 @@ impl FloatingFrame {
             momentum = add_scaled(momentum, speeds[l], h);
             of_modes = add_scaled(of_modes, accelerations[l], h);
             let [x, y, z] = h;
-            for (to, product) in
-                inertia.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, z * x])
+            for (to, product) in inertia.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, z * x])
             {
                 *to -= product;
             }

@@ -125,10 +125,13 @@ impl BallSet {
             on_races: [Wrench::default(); 2],
             on_cage: Wrench::default(),
             cage_energy: 0.0,
-            guide_modes: bearing.cage.as_ref().and_then(|cage| cage.nodes.as_ref()).map_or_else(
-                Default::default,
-                |nodes| [0, 1].map(|_| vec![0.0; nodes.largest.len()]),
-            ),
+            guide_modes: bearing
+                .cage
+                .as_ref()
+                .and_then(|cage| cage.nodes.as_ref())
+                .map_or_else(Default::default, |nodes| {
+                    [0, 1].map(|_| vec![0.0; nodes.largest.len()])
+                }),
             no_dents,
             ball_force: vec![[0.0; 3]; layout.balls],
             ball_moment: vec![[0.0; 3]; layout.balls],

@@ -17,8 +17,7 @@ use crate::motion::system::System;
 const TOGETHER: usize = 4;
 
 /// Row of a cage instead of a node.
-const NO_NODE: SurfaceNode =
-    SurfaceNode { node: 0, place: [0.0; 3], normal: [0.0; 3], area: 0.0 };
+const NO_NODE: SurfaceNode = SurfaceNode { node: 0, place: [0.0; 3], normal: [0.0; 3], area: 0.0 };
 
 /// Part of the matrix of one solid, and its working memory.
 #[derive(Clone, Debug)]
@@ -55,7 +54,10 @@ struct SeatShapes {
 
 impl SeatShapes {
     /// Hubs with the lever of a row on each.
-    fn levers<'r>(&self, row: &'r SeatRow) -> impl Iterator<Item = (usize, &'r [f64; 6])> + use<'r> {
+    fn levers<'r>(
+        &self,
+        row: &'r SeatRow,
+    ) -> impl Iterator<Item = (usize, &'r [f64; 6])> + use<'r> {
         let hubs = self.hubs.into_iter().zip(&row.levers);
         hubs.filter_map(|(hub, lever)| Some((hub?, lever)))
     }
@@ -69,10 +71,9 @@ impl SolidBlock {
             .map(|(number, joint)| {
                 let surface = match system.assembly.seats.get(number) {
                     Some(seat) => system.assembly.solids[index].surfaces[seat.surface].clone(),
-                    None => Surface {
-                        nodes: vec![NO_NODE; 2],
-                        shapes: vec![0.0; joint.shapes.len()],
-                    },
+                    None => {
+                        Surface { nodes: vec![NO_NODE; 2], shapes: vec![0.0; joint.shapes.len()] }
+                    }
                 };
                 let (by_node, outward) = (surface.by_node(), vec![0.0; surface.nodes.len()]);
                 (number, SeatShapes { hubs: joint.hubs, surface, by_node, outward })

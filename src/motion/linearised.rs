@@ -304,7 +304,8 @@ impl Linearised {
                 (&system.assembly.bearings[index], &system.holds.bearings[index]);
             update_guides(guides, set, (bearing, holds), &system.bodies, hubs);
         }
-        let of_cages = system.sets.iter().enumerate().filter(|(_, set)| set.guide_modes[0].len() >= 2);
+        let of_cages =
+            system.sets.iter().enumerate().filter(|(_, set)| set.guide_modes[0].len() >= 2);
         let first_cage = system.assembly.seats.len();
         for (joint, (index, set)) in seats[first_cage..].iter_mut().zip(of_cages) {
             flexible_guides(joint, &mut guides[2 * index..2 * index + 2], set);

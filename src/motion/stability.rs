@@ -74,9 +74,10 @@ fn coordinate(assembly: &Assembly, entry: usize) -> Option<(String, f64)> {
         let name = &assembly.bodies[shaft.body].name;
         (at + shaft.amplitudes(), shaft.amplitudes(), name)
     });
-    let floating = assembly.floating.iter().zip(places.floating(assembly)).map(|(solid, at)| {
-        (at + solid.count(), solid.count(), &assembly.bodies[solid.body].name)
-    });
+    let floating =
+        assembly.floating.iter().zip(places.floating(assembly)).map(|(solid, at)| {
+            (at + solid.count(), solid.count(), &assembly.bodies[solid.body].name)
+        });
     let mut modes = solids.chain(shafts).chain(floating);
     let (first, _, name) = modes.find(|(at, count, _)| (*at..at + count).contains(&entry))?;
     Some((format!("mode {} of {name}", entry - first + 1), 1.0))

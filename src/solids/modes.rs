@@ -175,11 +175,7 @@ pub fn modes_of_fixed(
 }
 
 /// Stiffness about the undeformed state, and mass.
-fn matrices(
-    model: &SolidModel,
-    unknowns: &Unknowns,
-    kind: MassMatrix,
-) -> [SymmetricMatrix; 2] {
+fn matrices(model: &SolidModel, unknowns: &Unknowns, kind: MassMatrix) -> [SymmetricMatrix; 2] {
     let mut masses = mass_pattern(&model.problem, unknowns);
     mass(model, unknowns, kind, &mut masses);
     let mut undeformed = pattern(&model.problem, unknowns);

@@ -8,9 +8,7 @@ use bearing_dynamics::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm
 use bearing_dynamics::members::cage_nodes::{CageNodes, CageNow};
 use bearing_dynamics::members::floating_solid::FloatingSolid;
 use bearing_dynamics::members::rigid_body::BodyKinematics;
-use bearing_dynamics::motion::simulation::{
-    Integrator, RunOptions, Simulation, Start, Stepping,
-};
+use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::scene::Format;
 use bearing_dynamics::scene::build::cage::add_cage_nodes;
@@ -240,13 +238,21 @@ fn node_contacts_conserve_momentum_and_book_their_friction() {
             });
             let gone: Vec<f64> =
                 posed.gone.iter().zip(&posed.speeds).map(|(q, v)| q + by * v).collect();
-            let now = CageNow { body: &body, modes: [&gone, &posed.speeds], bound: posed.nodes.bound(&gone) };
+            let now = CageNow {
+                body: &body,
+                modes: [&gone, &posed.speeds],
+                bound: posed.nodes.bound(&gone),
+            };
             let mut unused = vec![0.0; gone.len()];
             posed.nodes.pocket(pocket, &now, &moved, BALL, &mut unused).energy
         };
         let stored = (energy(step) - energy(-step)) / (2.0 * step);
         let error = (power + stored - found.contact.power).abs();
-        assert!(error <= 1e-5 * power.abs(), "{power} W + {stored} W, friction {} W", found.contact.power);
+        assert!(
+            error <= 1e-5 * power.abs(),
+            "{power} W + {stored} W, friction {} W",
+            found.contact.power
+        );
     }
 }
 
@@ -344,7 +350,8 @@ fn a_state_with_a_flexible_cage_continues_with_the_same_bits() {
     for _ in 0..200 {
         whole.step().unwrap();
     }
-    let mut rest = Simulation::from_state(assembly, options, whole.state.clone(), whole.time).unwrap();
+    let mut rest =
+        Simulation::from_state(assembly, options, whole.state.clone(), whole.time).unwrap();
     for _ in 0..200 {
         whole.step().unwrap();
         rest.step().unwrap();

@@ -353,7 +353,9 @@ fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item
         None => format!("{balls} pocket tests"),
         Some(nodes) => {
             let count = nodes.pockets.first().map_or(0, |pocket| pocket.group.places.len());
-            format!("{balls} pockets of {count} nodes; the nodes are tested only when the ball is near the wall")
+            format!(
+                "{balls} pockets of {count} nodes; the nodes are tested only when the ball is near the wall"
+            )
         }
     };
     vec![Item::does(Stage::Pockets, subject, why).costing(balls as u64), guide]

@@ -17,8 +17,8 @@ use bearing_dynamics::output::session::{
     Motion, Parts, RubberParts, RunRequest, SequenceParts, Session, SolidParts,
 };
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
-use bearing_dynamics::scene::build::cage::BuiltCage;
 use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
+use bearing_dynamics::scene::build::cage::BuiltCage;
 use bearing_dynamics::scene::build::motion::DynamicsError;
 use bearing_dynamics::scene::build::shaft::{ShaftElements, take_shafts};
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;

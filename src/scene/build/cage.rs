@@ -5,11 +5,11 @@ use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
 use crate::kinematics::vec3::{Vec3, add_scaled, dot, norm, scale, sub};
-use crate::mesh::TetMesh;
-use crate::mesh::measure::{Share, tributary_areas};
-use crate::mesh::error::MeshError;
 use crate::members::cage_nodes::{CageNodes, NodeGroup, PocketNodes, SECTORS, azimuth};
 use crate::members::floating_solid::{FloatingSolid, RadiusGauge};
+use crate::mesh::TetMesh;
+use crate::mesh::error::MeshError;
+use crate::mesh::measure::{Share, tributary_areas};
 use crate::mesh::tet_mesh::Face;
 use crate::scene::resolve::resolved::{CageInRun, Dynamics, FlexibleCage};
 use crate::solids::floating_reduction::{FloatingReduction, Patch, reduce_floating};
@@ -100,11 +100,8 @@ fn add(
         let stiffness = |node: u32| flexible.penalty.of_node(area(node));
         NodeGroup::new(&list, place, stiffness, &reduction.shapes)
     };
-    let pockets: Vec<PocketNodes> = surfaces
-        .pockets
-        .iter()
-        .map(|nodes| PocketNodes::new(group(nodes)))
-        .collect();
+    let pockets: Vec<PocketNodes> =
+        surfaces.pockets.iter().map(|nodes| PocketNodes::new(group(nodes))).collect();
     let land = group(&surfaces.land);
     let outward = if contacts.guidance == Guidance::InnerRace { -1.0 } else { 1.0 };
     let distance = |place: &Vec3| libm::hypot(place[1], place[2]);
@@ -130,8 +127,7 @@ fn add(
     });
     let body = caged.body;
     let [xx, yy, zz, ..] = reduction.frame.inertia;
-    let inertia =
-        Inertia { mass: reduction.frame.mass, axial: xx, transverse: 0.5 * (yy + zz) };
+    let inertia = Inertia { mass: reduction.frame.mass, axial: xx, transverse: 0.5 * (yy + zz) };
     all.bodies[body].mobility = Mobility::Free(inertia);
     let gauges = if modes > 0 { gauges(&mesh, &surfaces.outer, &reduction) } else { Vec::new() };
     all.floating.push(FloatingSolid { body, frame: reduction.frame.clone(), gauges });
@@ -253,8 +249,7 @@ fn gauges(mesh: &TetMesh, outer: &[u32], reduction: &FloatingReduction) -> Vec<R
         let nodes: Vec<u32> = outer.iter().filter(near).copied().collect();
         let radial = |shape: &Vec<Vec3>| {
             let of = |node: &u32| {
-                let ([_, y, z], [_, v, w]) =
-                    (mesh.nodes[*node as usize], shape[*node as usize]);
+                let ([_, y, z], [_, v, w]) = (mesh.nodes[*node as usize], shape[*node as usize]);
                 (y * v + z * w) / libm::hypot(y, z)
             };
             nodes.iter().map(of).sum::<f64>() / nodes.len() as f64

@@ -3,14 +3,14 @@
 use crate::assembly::channels::ChannelGroup;
 use crate::assembly::loads::{CageBody, DrivenBody, RotatingLoad};
 use crate::ch2_housing::bearing::cage::Guidance;
-use crate::ch2_housing::bore_contact::Penalty;
-use crate::mesh;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::ch2_housing::bore_contact::Penalty;
 use crate::ch5_cage::raceway_profile::RacewayProfile;
 use crate::equilibrium::statics::Condition;
+use crate::mesh;
 use crate::motion::simulation::RunOptions;
 pub use crate::scene::text::document::Assumption;
 use crate::scene::text::sweep::SweepAxis;

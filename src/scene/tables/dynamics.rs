@@ -2,8 +2,8 @@
 
 use crate::assembly::channels::ChannelGroup;
 use crate::scene::tables::bearing::{
-    DENSITY, DENSITY_HINT, MODULUS, MODULUS_HINT, POISSON, POISSON_HINT, DISPLACEMENT, FORCE, LOAD_HINT, MOMENT, RADIUS, RADIUS_HINT, SPIN,
-    STEEL_DENSITY, TILT, TILT_HINT, quantity,
+    DENSITY, DENSITY_HINT, DISPLACEMENT, FORCE, LOAD_HINT, MODULUS, MODULUS_HINT, MOMENT, POISSON,
+    POISSON_HINT, RADIUS, RADIUS_HINT, SPIN, STEEL_DENSITY, TILT, TILT_HINT, quantity,
 };
 use crate::scene::tables::keys::{Key, Kind, Need, Table, above, closed, open, table};
 use crate::scene::text::units::Dimension;

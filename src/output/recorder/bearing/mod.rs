@@ -132,7 +132,8 @@ impl Recorder {
                 self.cage(set, bearing, place, before, row);
                 if let Some(radii) = radii(simulation, bearing) {
                     let fold = |from: f64, of: fn(f64, f64) -> f64| radii.clone().fold(from, of);
-                    let extremes = [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)];
+                    let extremes =
+                        [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)];
                     self.values.extend(extremes);
                 }
             }
@@ -285,7 +286,8 @@ fn radii<'s>(
     let system = &simulation.system;
     let gauges = gauges(&system.assembly, bearing)?;
     let solid = bearing.cage.as_ref()?.nodes.as_ref()?.floating;
-    let [gone, _] = system.assembly.floating[solid].split(system.deformed(&simulation.state, solid));
+    let [gone, _] =
+        system.assembly.floating[solid].split(system.deformed(&simulation.state, solid));
     Some(gauges.iter().map(move |gauge| gauge.shape.iter().zip(gone).map(|(s, q)| s * q).sum()))
 }
 
