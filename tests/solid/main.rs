@@ -6,6 +6,7 @@ mod solid_common;
 mod bore_contact;
 mod cylinder_contact;
 mod elastomer;
+mod floating_frame;
 mod material_laws;
 mod rubber;
 mod rubber_bodies;

@@ -102,6 +102,7 @@ fn of_steps(
         Some(shapes) => shapes.assembly.clone(),
         None => lists.assembly()?.clone(),
     };
+    scene.add_cage_nodes(&mut assembly)?;
     let bushings = take_bushings(scene, &mut assembly)?;
     let shafts = take_shafts(scene, &mut assembly)?;
     let elements = (&bushings[..], &shafts[..]);
