@@ -189,7 +189,7 @@ impl RunTable {
             let (low, high) = relative
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), of| (a.min(of), b.max(of)));
             let mean_relative = (speeds[0] - speeds[1]).abs();
-            if !(mean_relative > 0.0) {
+            if mean_relative.is_nan() || mean_relative <= 0.0 {
                 return None;
             }
             let angle = |side: &str| {

@@ -162,7 +162,7 @@ fn loop_at(radius: f64, centre: [f64; 3]) -> CageLoop {
         radius,
         transceiver_radius: 8e-3,
         frequency: natural,
-        resistance: [8e-3, radius].map(|radius| copper_resistance(radius, 0.15e-3, natural)),
+        resistance: [radius, 8e-3].map(|radius| copper_resistance(radius, 0.15e-3, natural)),
         ..telemeter(1.0)
     };
     CageLoop { circuit, centre }
@@ -184,7 +184,7 @@ fn two_loops_give_all_coordinates_of_a_cage() {
     }
     assert!(found.residual <= 1e-12 && found.iterations <= 20, "{found:?}");
     let of = found.observability;
-    assert!((10.0..20.0).contains(&of.condition), "{of:?}");
+    assert!((15.0..30.0).contains(&of.condition), "{of:?}");
 }
 
 /// Errors of the readings appear in the coordinates as the observability states, and no more than by the condition number.

@@ -467,7 +467,7 @@ fn lines_section(lines: &[BearingLines]) -> Result<Value, ResultsError> {
     }
     Ok(json!({
         "are": "kinematic frequencies of pure rolling at the mean speeds over the window",
-        "amplitude_is": "highest of the bin nearest to the line and its two neighbours; bins_from_nearest tells which",
+        "amplitude_is": "highest of the bin nearest to the line and its two neighbours; bins_from_nearest is its distance from the nearest",
         "median_around_is": format!(
             "median amplitude of up to {NOISE_BINS} bins on each side, without the three next to the line"
         ),
