@@ -41,15 +41,15 @@ pub fn node_contact(
     (penetration, push): (f64, Vec3),
     sliding: Vec3,
 ) -> NodeContact {
-    let load = stiffness * penetration;
+    let normal_load = stiffness * penetration;
     let slip = add_scaled(sliding, -dot(sliding, push), push);
     let speed_squared = dot(slip, slip);
-    let per_speed =
-        friction * load / (speed_squared + regularisation_speed * regularisation_speed).sqrt();
+    let per_speed = friction * normal_load
+        / (speed_squared + regularisation_speed * regularisation_speed).sqrt();
     NodeContact {
         penetration,
-        normal_load: load,
-        force: add_scaled(scale(push, load), -per_speed, slip),
+        normal_load,
+        force: add_scaled(scale(push, normal_load), -per_speed, slip),
         power: -per_speed * speed_squared,
     }
 }

@@ -5,7 +5,7 @@ use bearing_dynamics::output::spectrum::{Spectrum, spectrum};
 
 use crate::bearings::{ANGULAR_CONTACT, Lengths};
 use crate::bushings::order;
-use crate::cage_bearing::{Rolling, kinematics, rolling};
+use crate::cage_bearing::{CAGE_600RPM, Rolling, kinematics, rolling};
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;
 use crate::context::CaseContext;
@@ -22,7 +22,6 @@ pub const CASE: Case = Case {
     run,
 };
 
-const SHIPPED: &str = include_str!("../../scenes/cage_600rpm.toml");
 /// Of 5.4.3, rpm.
 const SPEED: f64 = 1800.0;
 const BALLS: f64 = 11.0;
@@ -44,9 +43,9 @@ struct History {
 /// The scene of 5.4.1 at 1800 rpm without its cage, with these profiles.
 fn roll(profiles: &str) -> Result<History, CaseError> {
     let cut = |from: &str, to: &str| {
-        let start = SHIPPED.find(from)?;
-        let end = start + SHIPPED[start..].find(to)?;
-        Some(&SHIPPED[start..end])
+        let start = CAGE_600RPM.find(from)?;
+        let end = start + CAGE_600RPM[start..].find(to)?;
+        Some(&CAGE_600RPM[start..end])
     };
     let words = || CaseError::message("the shipped scene has other tables");
     let cage = cut("[bearing.cage]", "[inner_race]").ok_or_else(words)?;
@@ -56,7 +55,7 @@ fn roll(profiles: &str) -> Result<History, CaseError> {
     let damped = "[contact_damping]\nlaw = \"hunt-crossley\"\nalpha = \"0.3 s/m\"\n\n[numerics]";
     let profiles = format!("{profiles}\n");
     let scene = changed_scene(
-        SHIPPED,
+        CAGE_600RPM,
         &[
             (cage, profiles.as_str()),
             (speed, &format!("speed = \"{SPEED} rpm\"")),

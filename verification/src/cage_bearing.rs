@@ -21,6 +21,8 @@ use crate::oracles::statics::{Known, OracleBearing, OracleContact};
 
 /// The cage watched by the telemeter.
 pub const CAGE_TELEMETER: &str = include_str!("../../scenes/cage_telemeter.toml");
+/// The run of section 5.4.1.
+pub const CAGE_600RPM: &str = include_str!("../../scenes/cage_600rpm.toml");
 /// Time between two samples, s.
 pub const INTERVAL: f64 = 1e-5;
 
@@ -46,8 +48,8 @@ fn options() -> (RunOptions, u64) {
 /// # Errors
 /// A scene that no longer reads.
 pub fn rolling(speed: f64) -> Result<DynamicProblem, CaseError> {
-    let text = include_str!("../../scenes/cage_600rpm.toml");
-    let mut problem = dynamic_problem(&scene::read_str(text, Format::Toml, "cage_600rpm.toml")?)?;
+    let mut problem =
+        dynamic_problem(&scene::read_str(CAGE_600RPM, Format::Toml, "cage_600rpm.toml")?)?;
     problem.inner.rotation = Rotation::Speed(Profile::Constant(speed));
     Ok(problem)
 }
