@@ -280,7 +280,7 @@ fn each_published_value_stands_on_one_line_of_the_index() {
 const TYPED: &[(&str, f64, &str)] = &[
     (
         "rubber_cube_2_3_1/case.rs",
-        1.245,
+        1245.0,
         "a stress of Bergström and Boyce's model, not a speed of Table 5.1",
     ),
     (
