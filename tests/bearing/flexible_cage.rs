@@ -176,10 +176,10 @@ fn only_nodes_near_a_ball_are_tested_and_none_is_missed() {
             let (mut load, mut count) = (0.0, 0);
             for node in 0..of.group.places.len() {
                 let mut place = of.group.places[node];
-                for axis in 0..3 {
+                for (axis, part) in place.iter_mut().enumerate() {
                     for (k, gone) in posed.gone.iter().enumerate() {
                         let at = (3 * node + axis) * posed.gone.len() + k;
-                        place[axis] += gone * of.group.shapes[at];
+                        *part += gone * of.group.shapes[at];
                     }
                 }
                 let turned: Vec3 = (posed.body.state.orientation * Vector3::from(place)).into();

@@ -149,8 +149,8 @@ fn circuits_are_those_of_their_parts() {
 fn array(loops: Vec<CageLoop>) -> TelemeterArray {
     let transceiver = |i: usize| {
         let (sin, cos) = (TAU * i as f64 / 12.0 + 0.1).sin_cos();
-        let radius = if i % 2 == 0 { 28e-3 } else { 36e-3 };
-        let axis = if i % 2 == 0 { [1.0, 0.0, 0.0] } else { [0.0, cos, sin] };
+        let radius = if i.is_multiple_of(2) { 28e-3 } else { 36e-3 };
+        let axis = if i.is_multiple_of(2) { [1.0, 0.0, 0.0] } else { [0.0, cos, sin] };
         Transceiver { centre: [3e-3, radius * cos, radius * sin], axis }
     };
     TelemeterArray { loops, transceivers: (0..12).map(transceiver).collect() }
@@ -212,9 +212,9 @@ fn errors_of_readings_grow_as_stated() {
         assert!(error <= 1.01 * bound, "{error:e} {bound:e}");
         (0..6).for_each(|i| squares[i] += (found[i] - POSE[i]).powi(2));
     }
-    for i in 0..6 {
-        let found = (squares[i] / draws as f64).sqrt();
-        let expected = deviation * of.noise_gain[i];
+    for (i, (square, gain)) in squares.iter().zip(&of.noise_gain).enumerate() {
+        let found = (square / draws as f64).sqrt();
+        let expected = deviation * gain;
         // A standard deviation of 40 draws has an error of 11 %.
         assert!((found / expected - 1.0).abs() <= 0.4, "{i}: {found:e} for {expected:e}");
     }

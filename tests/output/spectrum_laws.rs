@@ -162,7 +162,7 @@ fn an_envelope_is_that_of_the_lines_in_its_band() {
 /// The mean and half the sampling rate have no quadrature.
 #[test]
 fn an_envelope_has_no_mean_and_no_alternation() {
-    let alternating = |i: usize| if i % 2 == 0 { 4.0 } else { -2.0 };
+    let alternating = |i: usize| if i.is_multiple_of(2) { 4.0 } else { -2.0 };
     let values: Vec<f64> = (0..64).map(alternating).collect();
     let found = envelope(&values, 1.0, [0.0, 0.5]).unwrap();
     assert!(found.iter().all(|of| of.abs() <= 1e-14), "{found:?}");

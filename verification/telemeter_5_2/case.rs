@@ -263,8 +263,8 @@ fn table_5_1(context: &mut CaseContext) -> Result<(), CaseError> {
 fn several_transceivers(context: &mut CaseContext) -> Result<(), CaseError> {
     let transceiver = |i: usize| {
         let (sin, cos) = (TAU * i as f64 / 12.0 + 0.1).sin_cos();
-        let radius = if i % 2 == 0 { 28e-3 } else { 36e-3 };
-        let axis = if i % 2 == 0 { [1.0, 0.0, 0.0] } else { [0.0, cos, sin] };
+        let radius = if i.is_multiple_of(2) { 28e-3 } else { 36e-3 };
+        let axis = if i.is_multiple_of(2) { [1.0, 0.0, 0.0] } else { [0.0, cos, sin] };
         Transceiver { centre: [3e-3, radius * cos, radius * sin], axis }
     };
     let loop_at = |radius: f64, centre: [f64; 3]| {
