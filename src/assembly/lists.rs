@@ -74,13 +74,15 @@ pub enum Mobility {
     Driven(Box<DrivenBody>),
     /// Under its contacts and its weight alone.
     Free(Inertia),
+    /// Follows a solid in explicit steps; without mass of its own.
+    Carried,
 }
 
 impl Body {
     /// `None` for a fixed body.
     pub fn inertia(&self) -> Option<&Inertia> {
         match &self.mobility {
-            Mobility::Fixed => None,
+            Mobility::Fixed | Mobility::Carried => None,
             Mobility::Driven(race) => Some(&race.inertia),
             Mobility::Free(inertia) => Some(inertia),
         }
@@ -89,14 +91,14 @@ impl Body {
     pub fn driven(&self) -> Option<&DrivenBody> {
         match &self.mobility {
             Mobility::Driven(race) => Some(race),
-            Mobility::Fixed | Mobility::Free(_) => None,
+            Mobility::Fixed | Mobility::Free(_) | Mobility::Carried => None,
         }
     }
 
     pub fn driven_mut(&mut self) -> Option<&mut DrivenBody> {
         match &mut self.mobility {
             Mobility::Driven(race) => Some(race),
-            Mobility::Fixed | Mobility::Free(_) => None,
+            Mobility::Fixed | Mobility::Free(_) | Mobility::Carried => None,
         }
     }
 
@@ -153,6 +155,8 @@ pub struct Caged {
     pub contacts: CageContacts,
     /// Contact by nodes of its mesh, instead of by the surfaces of `contacts`.
     pub nodes: Option<CageNodes>,
+    /// True if the cage takes explicit steps of its own, contacts included; its body follows it.
+    pub in_elements: bool,
 }
 
 impl Caged {
@@ -398,7 +402,7 @@ impl From<&DynamicProblem> for Assembly {
         let mut bodies = vec![inner, outer];
         let cage = problem.cage.as_ref().map(|CageBody { inertia, contacts }| {
             bodies.push(body("the cage", Mobility::Free(*inertia)));
-            Caged { body: CAGE, contacts: *contacts, nodes: None }
+            Caged { body: CAGE, contacts: *contacts, nodes: None, in_elements: false }
         });
         let bearing = Bearing {
             name: None,

@@ -31,21 +31,32 @@ pub fn depth_in_land(arm: Vec3, axis: Vec3, radius: f64, outward: f64) -> (f64, 
     (outward * (distance - radius), scale(across, outward / distance))
 }
 
-/// Force (5.8) at a node, F_n = K Δd n, with Coulomb friction that is regularised below `regularisation_speed` (m/s).
+/// Coulomb friction of a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    pub coefficient: f64,
+    /// Regularised below this speed, m/s.
+    pub regularisation_speed: f64,
+    /// Largest friction over sliding speed, N·s/m.
+    pub most_per_speed: f64,
+}
+
+/// Force (5.8) at a node, F_n = K Δd n, with Coulomb friction.
 /// `sliding` is the velocity of the other body's surface relative to the node, m/s.
 #[doc(alias = "5.8")]
 pub fn node_contact(
     stiffness: f64,
-    friction: f64,
-    regularisation_speed: f64,
+    friction: Friction,
     (penetration, push): (f64, Vec3),
     sliding: Vec3,
 ) -> NodeContact {
     let normal_load = stiffness * penetration;
     let slip = add_scaled(sliding, -dot(sliding, push), push);
     let speed_squared = dot(slip, slip);
-    let per_speed = friction * normal_load
+    let Friction { coefficient, regularisation_speed, most_per_speed } = friction;
+    let per_speed = coefficient * normal_load
         / (speed_squared + regularisation_speed * regularisation_speed).sqrt();
+    let per_speed = if per_speed > most_per_speed { most_per_speed } else { per_speed };
     NodeContact {
         penetration,
         normal_load,

@@ -16,8 +16,8 @@ use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load}
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::slices::{Motion, Slices};
-use crate::kinematics::vec3::{Vec3, add, cross, scale, sub};
-use crate::members::cage_nodes::{CageNodes, CageNow, Touched};
+use crate::kinematics::vec3::{Vec3, add, cross, dot, scale, sub};
+use crate::members::cage_nodes::{CageNodes, CageNow, Deformation, Touched};
 use crate::members::contacts;
 use crate::members::contacts::{ContactLaws, ContactTable, Kernel, Want, Work, lane};
 use crate::members::dent_table::DentError;
@@ -53,6 +53,8 @@ pub struct BallSet {
     pub cage_energy: f64,
     /// Modal forces of the normal loads between the cage's nodes and the land, for both ends, N.
     pub guide_modes: [Vec<f64>; 2],
+    /// External wrench on each ball, N and N·m, constant within a step; empty without.
+    pub outside: Vec<Wrench>,
     /// Error of its dents; there is no motion then.
     pub no_dents: Option<DentError>,
     ball_force: Vec<Vec3>,
@@ -132,6 +134,7 @@ impl BallSet {
                 .map_or_else(Default::default, |nodes| {
                     [0, 1].map(|_| vec![0.0; nodes.largest.len()])
                 }),
+            outside: Vec::new(),
             no_dents,
             ball_force: vec![[0.0; 3]; layout.balls],
             ball_moment: vec![[0.0; 3]; layout.balls],
@@ -178,6 +181,13 @@ impl BallSet {
             None => self.ball_force.fill([0.0; 3]),
         }
         self.ball_moment.fill([0.0; 3]);
+        for (ball, of) in self.outside.iter().enumerate() {
+            self.ball_force[ball] = add(self.ball_force[ball], of.force);
+            self.ball_moment[ball] = of.moment;
+            let [velocity, spin] =
+                [VELOCITY, SPIN].map(|part| self.layout.ball_vector(state, part, ball));
+            ledger[Ledger::Foundation as usize] += dot(of.force, velocity) + dot(of.moment, spin);
+        }
         self.on_races = [Wrench::default(); 2];
         self.on_cage = Wrench::default();
         self.add_race_contacts(state, ledger);
@@ -393,7 +403,8 @@ impl BallSet {
         ran: &mut Counts,
     ) {
         let (Some(caged), Some(cage)) = (&bearing.cage, self.cage) else { return };
-        let now = CageNow { body: &cage, modes, bound: nodes.bound(modes[0]) };
+        let bound = nodes.bound(modes[0]);
+        let now = CageNow { body: &cage, deformation: Deformation::Modes(modes), bound };
         self.cage_energy = 0.0;
         for ball in 0..self.layout.balls {
             let motion = AxisMotion {

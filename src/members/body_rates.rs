@@ -35,6 +35,7 @@ impl System {
         }
         let (acceleration, spin_rate) = match (&body.mobility, steps.floating) {
             (Mobility::Fixed, _) => return,
+            (Mobility::Carried, _) => ([0.0; 3], [0.0; 3]),
             (Mobility::Free(inertia), Some(of)) => {
                 let (solid, at) = (&self.assembly.floating[of], self.floating[of]);
                 let entries = at..at + 2 * solid.count();

@@ -4,14 +4,15 @@
 //! a pocket is passed over while its ball is farther from the wall than its nodes can be displaced, and of the land only
 //! the sectors towards which the cage is displaced are searched.
 
+use crate::assembly::state::BodyState;
 use crate::ch2_housing::bearing::cage::{AxisMotion, CageContact};
 use crate::ch5_cage::node_contact::{
-    NodeContact, depth_in_ball, depth_in_land, node_contact, surface_velocity,
+    Friction, NodeContact, depth_in_ball, depth_in_land, node_contact, surface_velocity,
 };
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::members::floating_solid::{into_frame, out_of_frame};
 use crate::members::rigid_body::{BodyKinematics, Wrench};
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 
 /// Nodes of one contact surface.
@@ -19,6 +20,8 @@ use std::f64::consts::TAU;
 pub struct NodeGroup {
     /// Undeformed positions from the cage's centre of mass, m.
     pub places: Vec<Vec3>,
+    /// Index of each in the mesh.
+    pub nodes: Vec<u32>,
     /// K of each node, N/m.
     pub stiffness: Vec<f64>,
     /// Displacements per unit of each mode: all modes along X of the first node, along Y, along Z, of the second node, …
@@ -30,7 +33,7 @@ pub struct NodeGroup {
 /// Contact nodes of a cage.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CageNodes {
-    /// Index in [`crate::assembly::lists::Assembly::floating`].
+    /// Index in [`crate::assembly::lists::Assembly::floating`]; without meaning for a cage in elements.
     pub floating: usize,
     /// Largest displacement of a contact node per unit of each mode.
     pub largest: Vec<f64>,
@@ -82,6 +85,7 @@ impl NodeGroup {
         });
         NodeGroup {
             places: nodes.iter().map(|&node| place(node)).collect(),
+            nodes: nodes.to_vec(),
             stiffness: nodes.iter().map(|&node| stiffness(node)).collect(),
             shapes: by_node.collect(),
             modes: shapes.len(),
@@ -106,8 +110,34 @@ impl NodeGroup {
         })
     }
 
-    /// Adds the modal forces of a force at a node.
-    fn project(&self, node: usize, force: Vec3, forces: &mut [f64]) {
+    /// Place of a node from the cage's centre, m, and its velocity relative to this centre, m/s, in axes of the cage.
+    pub(crate) fn motion(&self, node: usize, now: &CageNow, spin: Vec3) -> [Vec3; 2] {
+        match now.deformation {
+            Deformation::Modes([amplitudes, rates]) => {
+                let place = add(self.places[node], self.at(node, amplitudes));
+                [place, add(cross(spin, place), self.at(node, rates))]
+            }
+            Deformation::Elements(elements) => {
+                let BodyState { position, velocity, orientation, .. } = &now.body.state;
+                let at = self.nodes[node] as usize;
+                let [moved, rate] =
+                    [elements.displacement[at], elements.rate[at]].map(|[x, y, z, _]| [x, y, z]);
+                let place = add(add(self.places[node], elements.centre), moved);
+                [sub(place, *position), sub(rate, *velocity)].map(|v| into_frame(orientation, v))
+            }
+        }
+    }
+
+    /// Adds the modal or nodal forces of a force at a node, given in axes of the cage.
+    fn project(&self, node: usize, force: Vec3, now: &CageNow, forces: &mut [f64]) {
+        if let Deformation::Elements(_) = now.deformation {
+            let at = 4 * self.nodes[node] as usize;
+            let force = out_of_frame(&now.body.state.orientation, force);
+            for (to, force) in forces[at..at + 3].iter_mut().zip(force) {
+                *to += force;
+            }
+            return;
+        }
         for (axis, force) in force.into_iter().enumerate() {
             for (to, shape) in forces.iter_mut().zip(self.shape(node, axis)) {
                 *to += force * shape;
@@ -116,11 +146,33 @@ impl NodeGroup {
     }
 }
 
+/// How a cage deforms.
+#[derive(Clone, Copy)]
+pub enum Deformation<'s> {
+    /// Amplitudes (m) and rates (m/s) of its modes.
+    Modes([&'s [f64]; 2]),
+    Elements(ElementsNow<'s>),
+}
+
+/// A cage in elements; the fourth number of a node is padding.
+#[derive(Clone, Copy)]
+pub struct ElementsNow<'s> {
+    /// Displacement of each node, m.
+    pub displacement: &'s [[f64; 4]],
+    /// Velocity of each node, m/s.
+    pub rate: &'s [[f64; 4]],
+    /// Mass of each node, kg.
+    pub mass: &'s [f64],
+    /// Undeformed centre of mass, m.
+    pub centre: Vec3,
+    /// Step of the elements, s.
+    pub step: f64,
+}
+
 /// The cage at one instant.
 pub struct CageNow<'s> {
     pub body: &'s BodyKinematics,
-    /// Amplitudes (m) and rates (m/s) of its modes.
-    pub modes: [&'s [f64]; 2],
+    pub deformation: Deformation<'s>,
     /// Upper bound of the displacement of any contact node, m.
     pub bound: f64,
 }
@@ -178,13 +230,47 @@ impl CageNodes {
         self.largest.iter().zip(gone).map(|(largest, gone)| largest * gone.abs()).sum()
     }
 
+    /// Largest displacement of a contact node in axes of the cage, m.
+    pub fn farthest(&self, now: &CageNow) -> f64 {
+        let turn = now.body.state.orientation.inverse().to_rotation_matrix();
+        let Deformation::Elements(elements) = now.deformation else { return now.bound };
+        let groups = self.pockets.iter().map(|pocket| &pocket.group).chain([&self.land]);
+        let mut most = 0.0f64;
+        for group in groups {
+            for (place, node) in group.places.iter().zip(&group.nodes) {
+                let [x, y, z, _] = elements.displacement[*node as usize];
+                let there = add(add(*place, elements.centre), [x, y, z]);
+                let seen = turn * Vector3::from(sub(there, now.body.state.position));
+                let off = sub(seen.into(), *place);
+                most = most.max(dot(off, off));
+            }
+        }
+        most.sqrt()
+    }
+
+    /// Friction of a node. In elements it stops the slip of the node's own mass within two steps at the earliest, as
+    /// explicit steps with more would reverse it.
+    fn friction_of(&self, group: &NodeGroup, node: usize, now: &CageNow) -> Friction {
+        let most = match now.deformation {
+            Deformation::Modes(_) => f64::INFINITY,
+            Deformation::Elements(ElementsNow { mass, step, .. }) => {
+                0.5 * mass[group.nodes[node] as usize] / step
+            }
+        };
+        Friction {
+            coefficient: self.friction,
+            regularisation_speed: self.regularisation_speed,
+            most_per_speed: most,
+        }
+    }
+
     /// Tests one node against `depth`, the penetration and the direction of the force on the other body at a place.
     #[allow(clippy::too_many_arguments)]
     fn test(
         &self,
         group: &NodeGroup,
         node: usize,
-        modes: [&[f64]; 2],
+        now: &CageNow,
         cage_spin: Vec3,
         other: &Relative,
         depth: impl Fn(Vec3) -> (f64, Vec3),
@@ -192,7 +278,7 @@ impl CageNodes {
         forces: &mut [f64],
         normal: &mut [f64],
     ) {
-        let place = add(group.places[node], group.at(node, modes[0]));
+        let [place, own] = group.motion(node, now, cage_spin);
         let found = depth(place);
         let Touched { contact, on_other, on_cage: loads, energy, touching, .. } = &mut sum.touched;
         contact.penetration = contact.penetration.max(found.0);
@@ -200,18 +286,18 @@ impl CageNodes {
         if found.0 <= 0.0 {
             return;
         }
-        let own = add(cross(cage_spin, place), group.at(node, modes[1]));
         let surface = surface_velocity(other.position, other.velocity, other.spin, place);
         let NodeContact { normal_load, force, power, .. } = node_contact(
             group.stiffness[node],
-            self.friction,
-            self.regularisation_speed,
+            self.friction_of(group, node, now),
             found,
             sub(surface, own),
         );
         let on_cage = scale(force, -1.0);
-        group.project(node, on_cage, forces);
-        group.project(node, scale(found.1, normal_load), normal);
+        group.project(node, on_cage, now, forces);
+        if !normal.is_empty() {
+            group.project(node, scale(found.1, normal_load), now, normal);
+        }
         on_other.add_at(other.position, place, force);
         loads.add_at([0.0; 3], place, on_cage);
         *energy += 0.5 * normal_load * found.0;
@@ -251,7 +337,7 @@ impl CageNodes {
                 continue;
             }
             let depth = |place: Vec3| depth_in_ball(sub(place, other.position), ball_radius);
-            self.test(group, node, now.modes, spin, &other, depth, &mut sum, forces, &mut []);
+            self.test(group, node, now, spin, &other, depth, &mut sum, forces, &mut []);
         }
         sum.touched.tested = group.places.len() as u64;
         sum.finish(now.body)
@@ -303,7 +389,7 @@ impl CageNodes {
                     depth_in_land(arm, other.axis, self.land_radius, self.outward)
                 };
                 let normal = &mut normal[end];
-                self.test(group, node, now.modes, spin, &other, depth, sum, forces, normal);
+                self.test(group, node, now, spin, &other, depth, sum, forces, normal);
             }
         }
         sums.map(|sum| sum.finish(now.body))

@@ -112,7 +112,7 @@ pub fn body_now(body: &Body, t: f64, state: BodyState) -> BodyKinematics {
     match &body.mobility {
         Mobility::Fixed => fixed(&body.rest),
         Mobility::Driven(race) => with_prescribed(race, t, state),
-        Mobility::Free(_) => BodyKinematics::new(state),
+        Mobility::Free(_) | Mobility::Carried => BodyKinematics::new(state),
     }
 }
 

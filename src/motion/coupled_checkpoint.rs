@@ -6,6 +6,7 @@ use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
 use crate::motion::bore_friction::NodeSpring;
 use crate::motion::checkpoint::Checkpoint;
 use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, SolidPart};
+use crate::motion::explicit_cage::SteppedCage;
 use crate::motion::explicit_shaft::SteppedShaft;
 use crate::motion::explicit_solid::{SteppedSolid, seated};
 use crate::motion::race_in_bore::{Growth, Seat};
@@ -31,8 +32,8 @@ pub struct CouplingCheckpoint {
 pub struct SteppedCheckpoint {
     pub solid: SolidCheckpoint,
     pub seats: Vec<SeatCheckpoint>,
-    /// Numbers of a shaft in addition to its elements; empty for other solids.
-    pub shaft: Vec<f64>,
+    /// Numbers of a shaft or cage in addition to its elements; empty for other solids.
+    pub attached: Vec<f64>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,7 +88,11 @@ impl<'p> CoupledMotion<'p> {
                     load_work: of.sum.load_work,
                 }),
             }));
-            kept.shaft = part.shaft.as_ref().map_or(Vec::new(), |shaft| shaft.numbers());
+            kept.attached = match (&part.shaft, &part.cage) {
+                (Some(shaft), _) => shaft.numbers(),
+                (_, Some(cage)) => cage.numbers(),
+                _ => Vec::new(),
+            };
         }
         checkpoint.bushings = self.bushings.iter().map(BondedBushing::numbers).collect();
         checkpoint.exchanges = self.exchanges;
@@ -126,12 +131,13 @@ impl<'p> CoupledMotion<'p> {
         let mut solids: Vec<SteppedSolid> = solids
             .into_iter()
             .zip(&coupling_steps.solids)
-            .map(|(SolidPart { name, model, shaft, .. }, &(steps, limit))| {
+            .map(|(SolidPart { name, model, shaft, cage, .. }, &(steps, limit))| {
                 let step = coupling_steps.coupling_step / steps as f64;
                 let solid = ExplicitSolid::at_rest(model, method, step, limit);
                 let shaft =
                     shaft.map(|of| Box::new(SteppedShaft::new(of, &solid.model, &assembly)));
-                SteppedSolid { name, solid, steps, seats: Vec::new(), shaft }
+                let cage = cage.map(|of| Box::new(SteppedCage::new(of, &solid.model, &assembly)));
+                SteppedSolid { name, solid, steps, seats: Vec::new(), shaft, cage }
             })
             .collect();
         seated(&assembly, &mut solids, seats);
@@ -156,7 +162,10 @@ impl<'p> CoupledMotion<'p> {
             part.solid.restore(&kept.solid);
             part.sort(&exchange.simulation);
             if let Some(shaft) = &mut part.shaft {
-                shaft.restore(&kept.shaft);
+                shaft.restore(&kept.attached);
+            }
+            if let Some(cage) = &mut part.cage {
+                cage.restore(&kept.attached);
             }
             assert_eq!(part.seats.len(), kept.seats.len());
             for (seat, kept) in part.seats.iter_mut().zip(&kept.seats) {

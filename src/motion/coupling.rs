@@ -16,6 +16,7 @@ use crate::kinematics::vec3::Vec3;
 use crate::members::rigid_body::Wrench;
 use crate::motion::bonded_bushing::{BondedBushing, BondedSnapshot};
 use crate::motion::coupling_start::is_alone;
+use crate::motion::explicit_cage::CagePart;
 use crate::motion::explicit_shaft::{JointSnapshot, ShaftPart};
 use crate::motion::explicit_solid::{SolidSnapshot, SteppedSolid};
 use crate::motion::race_in_bore::{Lost, SeatSnapshot, SeatState};
@@ -36,6 +37,8 @@ pub struct SolidPart {
     pub displacement: Vec<Vec3>,
     /// `None` if the solid is not a shaft.
     pub shaft: Option<ShaftPart>,
+    /// `None` if the solid is not a cage.
+    pub cage: Option<CagePart>,
 }
 
 impl SolidPart {
@@ -50,7 +53,7 @@ impl SolidPart {
         model: SolidModel,
         displacement: Vec<Vec3>,
     ) -> SolidPart {
-        SolidPart { name, model, displacement, shaft: None }
+        SolidPart { name, model, displacement, shaft: None, cage: None }
     }
 }
 
@@ -191,7 +194,7 @@ impl<'p> CoupledMotion<'p> {
     /// Starts counts, contact and energy balance from the present state.
     pub(crate) fn begin(&mut self) -> Result<(), CouplingError> {
         for part in &mut self.solids {
-            part.step_in(self.coupling_step);
+            part.step_in(self.coupling_step, &self.simulation);
             for seat in &mut part.seats {
                 seat.grow_from(&part.solid);
             }
@@ -269,6 +272,9 @@ impl<'p> CoupledMotion<'p> {
             if let Some(shaft) = &mut part.shaft {
                 shaft.begin_coupling_step(&self.simulation);
             }
+            if let Some(cage) = &mut part.cage {
+                cage.begin_coupling_step(&self.simulation);
+            }
         }
         self.workers.each(&mut self.solids, |part| {
             let moved = part.take_coupling_step();
@@ -333,6 +339,11 @@ impl<'p> CoupledMotion<'p> {
         for now in self.bushings.iter().flat_map(|bushing| &bushing.sleeves) {
             push(now.sleeve.body, now.mean_load(coupling_step));
         }
+        for cage in self.solids.iter().filter_map(|part| part.cage.as_ref()) {
+            if let Some((race, load)) = cage.hand_over(&mut self.simulation, coupling_step) {
+                push(race, load);
+            }
+        }
         self.simulation.set_outside_loads(&self.loads);
     }
 
@@ -354,6 +365,12 @@ impl<'p> CoupledMotion<'p> {
         }
         for now in self.bushings.iter_mut().flat_map(|bushing| &mut bushing.sleeves) {
             now.book(self.coupling_step, &self.simulation.body(now.sleeve.body));
+        }
+        for SteppedSolid { solid, cage, .. } in &mut self.solids {
+            if let Some(cage) = cage {
+                cage.book(&self.simulation, self.coupling_step);
+                cage.carry(solid, &mut self.simulation);
+            }
         }
     }
 

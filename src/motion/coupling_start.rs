@@ -9,6 +9,7 @@ use crate::members::rigid_body;
 use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
 use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, SolidPart};
 use crate::motion::coupling_step::{check, divided, longest_coupling_step};
+use crate::motion::explicit_cage::SteppedCage;
 use crate::motion::explicit_shaft::SteppedShaft;
 use crate::motion::explicit_solid::{SteppedSolid, seated};
 use crate::motion::race_in_bore::Seat;
@@ -60,14 +61,15 @@ impl<'p> CoupledMotion<'p> {
         let method = ExplicitMethod::CentralDifferences;
         let mut solids: Vec<SteppedSolid> = solids
             .into_iter()
-            .map(|SolidPart { name, model, displacement, shaft }| {
+            .map(|SolidPart { name, model, displacement, shaft, cage }| {
                 let displacement = padded(displacement);
                 let limit = step_limit(&model, &displacement, method);
                 let mut solid = ExplicitSolid::at_rest(model, method, limit.step, limit);
                 solid.displacement = displacement;
                 let shaft =
                     shaft.map(|of| Box::new(SteppedShaft::new(of, &solid.model, &assembly)));
-                SteppedSolid { name, solid, steps: 1, seats: Vec::new(), shaft }
+                let cage = cage.map(|of| Box::new(SteppedCage::new(of, &solid.model, &assembly)));
+                SteppedSolid { name, solid, steps: 1, seats: Vec::new(), shaft, cage }
             })
             .collect();
         let seats = seated(&assembly, &mut solids, seats);
@@ -101,11 +103,12 @@ impl<'p> CoupledMotion<'p> {
             longest_coupling_step(assembly, &seats, &solids, &on_rubber, options.seat_phase)?;
         let steps: Vec<f64> = solids
             .iter()
-            .map(|SteppedSolid { solid, seats, shaft, .. }| {
+            .map(|SteppedSolid { solid, seats, shaft, cage, .. }| {
                 // With all nodes of all housing fits in contact.
                 let closed = seats.iter().fold(solid.limit, |limit, seat| {
                     closed_limit(&solid.model, &seat.seat.nodes, seat.seat.penalty, &limit)
                 });
+                let closed = cage.as_ref().map_or(closed, |cage| closed.with(cage.added(solid)));
                 let closed = shaft.as_ref().map_or(closed, |shaft| closed.with(shaft.added(solid)));
                 let longest =
                     shaft.as_ref().map_or(longest, |shaft| longest.min(shaft.braked(solid)));
@@ -136,7 +139,7 @@ pub(crate) fn is_alone(
         assembly.bodies.iter().filter_map(Body::driven).flat_map(|b| b.foundation_damping);
     let seats: usize = solids.iter().map(|part| part.seats.len()).sum();
     seats == 1
-        && solids.iter().all(|part| part.shaft.is_none())
+        && solids.iter().all(|part| part.shaft.is_none() && part.cage.is_none())
         && bushings.is_empty()
         && assembly.connections.is_empty()
         && brakes.all(|damping| damping == 0.0)

@@ -80,7 +80,7 @@ impl System {
             if let Some(cage) = &bearing.cage {
                 if cage.nodes.is_some() {
                     energy.cage_contact += set.cage_energy;
-                } else {
+                } else if !cage.in_elements {
                     for contact in set.pockets.iter().chain(&set.guides) {
                         energy.cage_contact +=
                             cage_energy(&cage.contacts.force, contact.penetration);

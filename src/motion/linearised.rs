@@ -186,7 +186,7 @@ impl Linearised {
             .map(|(index, body)| {
                 let at = system.places.body(index);
                 hubs.push(match &body.mobility {
-                    Mobility::Fixed => return None,
+                    Mobility::Fixed | Mobility::Carried => return None,
                     Mobility::Driven(race) => race_hub(race, at),
                     Mobility::Free(inertia) => {
                         Hub { at, inertia: six(inertia), free: [1.0; 6], ..Hub::default() }

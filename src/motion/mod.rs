@@ -19,6 +19,7 @@ pub mod energy;
 pub mod energy_ledger;
 pub mod error;
 pub mod error_control;
+pub mod explicit_cage;
 pub mod explicit_shaft;
 pub mod explicit_solid;
 pub mod extremes;

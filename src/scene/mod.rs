@@ -28,8 +28,8 @@ pub use error::{Place, Problem, SceneError};
 pub use resolve::bearing::resolve;
 pub use resolve::housing_scene::HousedScene;
 pub use resolve::resolved::{
-    Assumption, Cage, CageInRun, DefaultUsed, Dimensions, Dynamics, Plot, RaceDimensions, RunPlot,
-    RunSettings, Scene,
+    Assumption, Cage, CageInRun, CageMethod, DefaultUsed, Dimensions, Dynamics, Plot,
+    RaceDimensions, RunPlot, RunSettings, Scene,
 };
 pub use resolve::solid::resolve_subject;
 pub use resolve::solid_mesh::{KEY_OF_DIMENSION, key_of_dimension};

@@ -10,7 +10,7 @@ use crate::kinematics::strain::{Sym3, full, green_lagrange};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use crate::solids::model::SolidModel;
 use crate::solids::modes::{FreeFactor, ModeError, ModeOptions, Wanted, spread};
-use crate::solids::reduction::{Answer, combine, work};
+use crate::solids::reduction::{Answer, combine, superposed, work};
 use crate::solids::stress::each_point;
 use crate::solids::tangent::{MassMatrix, Unknowns};
 use std::f64::consts::TAU;
@@ -35,14 +35,7 @@ pub struct FloatingReduction {
 impl FloatingReduction {
     /// Displacements of all nodes in axes of the frame for these amplitudes (m), m.
     pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
-        let nodes = self.shapes.first().map_or(0, Vec::len);
-        let mut sum = vec![[0.0; 3]; nodes];
-        for (shape, gone) in self.shapes.iter().zip(gone) {
-            for (sum, here) in sum.iter_mut().zip(shape) {
-                *sum = add_scaled(*sum, *gone, *here);
-            }
-        }
-        sum
+        superposed(&self.shapes, gone)
     }
 }
 

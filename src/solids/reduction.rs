@@ -102,17 +102,21 @@ pub struct Reduction {
     pub cut_off: CutOff,
 }
 
+/// Σ of shapes with these amplitudes, node by node.
+pub(crate) fn superposed(shapes: &[Vec<Vec3>], amplitudes: &[f64]) -> Vec<Vec3> {
+    let mut sum = vec![[0.0; 3]; shapes.first().map_or(0, Vec::len)];
+    for (shape, of) in shapes.iter().zip(amplitudes) {
+        for (sum, here) in sum.iter_mut().zip(shape) {
+            *sum = add_scaled(*sum, *of, *here);
+        }
+    }
+    sum
+}
+
 impl Reduction {
     /// Displacements of all nodes for modal coordinates (m), m.
     pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
-        let nodes = self.shapes.first().map_or(0, Vec::len);
-        let mut sum = vec![[0.0; 3]; nodes];
-        for (shape, gone) in self.shapes.iter().zip(gone) {
-            for (sum, here) in sum.iter_mut().zip(shape) {
-                *sum = add_scaled(*sum, *gone, *here);
-            }
-        }
-        sum
+        superposed(&self.shapes, gone)
     }
 
     /// Outward displacement of each bore node under outward unit forces on each, by the modes, m/N.

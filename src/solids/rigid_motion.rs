@@ -8,9 +8,9 @@ use nalgebra::{Matrix3, Vector3};
 /// Mean motion of a body: that of a rigid body with the same momenta.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RigidMotion {
-    centre: Vec3,
-    translation: Vec3,
-    spin: Vec3,
+    pub centre: Vec3,
+    pub translation: Vec3,
+    pub spin: Vec3,
 }
 
 impl RigidMotion {
@@ -30,8 +30,18 @@ pub fn rigid_motion(
     if problem.damped_motion == DampedMotion::Absolute {
         return RigidMotion::default();
     }
+    mean_motion(&problem.nodes, mass, displacement, rate)
+}
+
+/// Mean motion of nodes at `places` (m).
+pub(crate) fn mean_motion(
+    places: &[Vec3],
+    mass: &[f64],
+    displacement: &[Node],
+    rate: &[Node],
+) -> RigidMotion {
     let vector = |v: &Node| Vector3::new(v[0], v[1], v[2]);
-    let place = |n: usize| Vector3::from(problem.nodes[n]) + vector(&displacement[n]);
+    let place = |n: usize| Vector3::from(places[n]) + vector(&displacement[n]);
     let total: f64 = mass.iter().sum();
     let mut centre = Vector3::zeros();
     let mut translation = Vector3::zeros();

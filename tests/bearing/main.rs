@@ -27,6 +27,7 @@ mod dynamics_stability;
 mod dynamics_starts;
 mod dynamics_step_limit;
 mod dynamics_traction;
+mod explicit_cage;
 mod flexible_cage;
 mod formulas;
 mod free_balls;

@@ -24,6 +24,7 @@ mod assembly_housings;
 mod assembly_reading;
 mod asymmetric_scenes;
 mod bad_scenes;
+mod cages;
 mod command_line;
 mod command_line_check;
 mod command_line_compare;

@@ -14,6 +14,8 @@ use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
 
+mod flexible;
+
 pub const CASE: Case = Case {
     id: "cage_speed_table_5_4",
     title: "Cage speeds of Table 5.4 from the bearing in motion",
@@ -60,6 +62,7 @@ fn run(context: &mut CaseContext) -> Result<(), CaseError> {
     tables(context, &runs);
     figures(context, &runs)?;
     steps += slip_over_traction(context)?;
+    steps += flexible::run(context)?;
     context.work("steps", steps);
     Ok(())
 }

@@ -2,15 +2,18 @@
 
 use std::f64::consts::{PI, TAU};
 
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
 use bearing_dynamics::assembly::state::{BODY, BodyState, Layout, POSITION};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::motion::clocked::{self, RunRequest};
 use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::scene;
 use bearing_dynamics::scene::Format;
+use bearing_dynamics::scene::build::cage::add_cage_nodes;
 use bearing_dynamics::scene::build::motion::dynamic_problem;
 
 use crate::bearings::{self, ANGULAR_CONTACT, Hertz, Lengths};
@@ -134,6 +137,15 @@ impl Motion {
         2.0 * gap / problem.geometry.pitch_radius
     }
 
+    /// Turns of the cage's centre about the outer race's axis.
+    pub fn whirl(&self) -> f64 {
+        let angle = |w: &[[f64; 2]]| {
+            let ([y, z], [v, u]) = (w[0], w[1]);
+            (y * u - z * v).atan2(y * v + z * u)
+        };
+        self.cage_centre.windows(2).map(angle).sum::<f64>() / TAU
+    }
+
     /// Lateral displacement (y, m) of a point that is fixed to the cage at `radius`.
     pub fn point_displacement(&self, radius: f64) -> Vec<f64> {
         let point = |(angle, centre): (&f64, &[f64; 2])| {
@@ -157,19 +169,38 @@ pub fn simulate(
     for _ in 0..(settle / INTERVAL).round() as u64 * steps_per_sample {
         simulation.step()?;
     }
-    let layout = simulation.system.sets[0].layout;
-    let outer = layout.outer();
-    // Where there is no cage the outer race stands in for it.
-    let cage = if layout.has_cage { layout.cage() } else { outer };
-    let mut last = Angles::of(&layout, &simulation.state);
-    let mut motion = Motion { first_cage_angle: last.cage, ..Motion::default() };
+    let mut recording = Recording::new(&simulation);
     for sample in 0..samples {
         if sample > 0 {
             for _ in 0..steps_per_sample {
                 simulation.step()?;
             }
         }
-        let state = &simulation.state;
+        recording.take(&simulation);
+    }
+    // Fails if energy went missing.
+    simulation.snapshot();
+    Ok(Motion { steps: simulation.steps, ..recording.motion })
+}
+
+/// Samples of the cage's motion.
+struct Recording {
+    motion: Motion,
+    last: Angles,
+}
+
+impl Recording {
+    fn new(simulation: &Simulation) -> Recording {
+        let last = Angles::of(&simulation.system.sets[0].layout, &simulation.state);
+        Recording { motion: Motion { first_cage_angle: last.cage, ..Motion::default() }, last }
+    }
+
+    fn take(&mut self, simulation: &Simulation) {
+        let Recording { motion, last } = self;
+        let (state, layout) = (&simulation.state, simulation.system.sets[0].layout);
+        let outer = layout.outer();
+        // Where there is no cage the outer race stands in for it.
+        let cage = if layout.has_cage { layout.cage() } else { outer };
         let now = Angles::of(&layout, state);
         let push = |to: &mut Vec<f64>, by: f64| to.push(to.last().copied().unwrap_or(0.0) + by);
         push(&mut motion.shaft, shortest(now.shaft - last.shaft));
@@ -177,12 +208,58 @@ pub fn simulate(
         let balls: f64 = now.balls.iter().zip(&last.balls).map(|(a, b)| shortest(a - b)).sum();
         push(&mut motion.balls, balls / now.balls.len() as f64);
         motion.cage_centre.push([1, 2].map(|i| state[cage + i] - state[outer + i]));
-        last = now;
+        *last = now;
     }
-    // Fails if energy went missing.
+}
+
+/// The scene of section 5.4.1 with a cage that touches by its nodes, `rigid` or `reduced`, at a speed over time (rad/s).
+///
+/// # Errors
+/// A scene that no longer reads, a cage without modes.
+pub fn with_nodes(body: &str, mesh: &str, speed: Profile) -> Result<Assembly, CaseError> {
+    let keys = format!(
+        "law = \"penalty\", at = \"nodes\", stiffness = \"2e8 N/m\" }}\nbody = \"{body}\"\nmesh = {mesh}\ncorrections = false"
+    );
+    let text = CAGE_600RPM.replace("law = \"penalty\", stiffness = \"2e8 N/m\" }", &keys);
+    let scene = scene::read_str(&text, Format::Toml, "cage_600rpm.toml")?;
+    let mut problem = dynamic_problem(&scene)?;
+    problem.inner.rotation = Rotation::Speed(speed);
+    let mut all = problem.assembly();
+    add_cage_nodes(&mut all, [&scene.dynamics].into_iter())
+        .map_err(|error| CaseError::message(&error.to_string()))?;
+    Ok(all)
+}
+
+/// Runs with error control for `settle` seconds, then takes `samples` samples `interval` seconds apart.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_by_accuracy(
+    assembly: Assembly,
+    accuracy: f64,
+    settle: f64,
+    interval: f64,
+    samples: usize,
+) -> Result<Motion, SimulationError> {
+    let options = RunOptions {
+        integrator: Integrator::Rosenbrock,
+        stepping: Stepping::Accuracy(accuracy),
+        ..RunOptions::default()
+    };
+    let end = settle + interval * samples as f64;
+    let (output_interval, fields_interval, channels) = (interval, None, Vec::new());
+    let request = RunRequest { options, end, output_interval, fields_interval, channels };
+    let (mut simulation, clock) = clocked::start(assembly, &request)?;
+    let mut recording: Option<Recording> = None;
+    while recording.as_ref().is_none_or(|of| of.motion.shaft.len() < samples) {
+        let arrival = clocked::step(&mut simulation, &clock)?;
+        if arrival.row && simulation.time > settle - 0.5 * interval {
+            recording.get_or_insert_with(|| Recording::new(&simulation)).take(&simulation);
+        }
+    }
     simulation.snapshot();
-    motion.steps = simulation.steps;
-    Ok(motion)
+    let motion = recording.map_or_else(Motion::default, |of| of.motion);
+    Ok(Motion { steps: simulation.steps, ..motion })
 }
 
 /// Angles about X at one instant, rad, each up to whole turns.

@@ -185,7 +185,7 @@ fn gravity(assembly: &Assembly) -> Item {
         return Item::skips(Stage::Gravity, Subject::Whole, "none is given");
     }
     let balls: usize = assembly.bearings.iter().map(|b| b.geometry.ball_count).sum();
-    let bodies = assembly.bodies.iter().filter(|body| body.moves()).count();
+    let bodies = assembly.bodies.iter().filter(|body| body.inertia().is_some()).count();
     Item::does(Stage::Gravity, Subject::Whole, "given; it acts on every body that moves")
         .costing((balls + bodies) as u64)
 }
@@ -201,6 +201,7 @@ fn motion(body: &Body, subject: Subject) -> Option<Item> {
         Mobility::Free(_) => {
             Item::does(Stage::Motion, subject, "six equations, under its contacts and its weight")
         }
+        Mobility::Carried => Item::does(Stage::Motion, subject, "the mean motion of its elements"),
         Mobility::Fixed if body.name == GROUND => return None,
         Mobility::Fixed => {
             let why = "fixed in space: no equations for it";
@@ -329,6 +330,10 @@ fn cage(bearing: &Bearing, subject: Subject, left_out: Option<&str>) -> Vec<Item
         let why = format!("{why}: no equations, no pocket tests");
         return vec![Item::skips(Stage::Pockets, subject, why)];
     };
+    if cage.in_elements {
+        let why = "in the steps of the cage's elements";
+        return [Stage::Pockets, Stage::Guide].map(|of| Item::skips(of, subject, why)).to_vec();
+    }
     let balls = bearing.geometry.ball_count;
     let land = match cage.contacts.guidance {
         Guidance::InnerRace => "inner",

@@ -23,7 +23,7 @@ use bearing_dynamics::scene::build::motion::dynamic_problem;
 use bearing_dynamics::scene::build::sensors::{Direction, SceneSensor, SceneSensorKind};
 use bearing_dynamics::scene::build::statics::static_problem;
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
-use bearing_dynamics::scene::{CageInRun, Document, RunSettings, Scene};
+use bearing_dynamics::scene::{CageInRun, CageMethod, Document, RunSettings, Scene};
 
 pub fn run(
     document: &Document,
@@ -265,13 +265,14 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
     {
         lines.extend(bodies(&one.scene));
     }
-    if !housings.is_empty() || scene.has_shafts_in_elements() {
+    if !housings.is_empty() || scene.has_shafts_in_elements() || scene.has_cages_in_elements() {
         let mut solids = of_housings(housings);
         // Shafts are not meshed here.
         let beams = scene.bodies.iter().filter_map(|body| body.beam.as_deref());
         let shafts = beams.filter(|beam| beam.in_elements.is_some()).count();
-        if shafts > 0 {
-            solids = vec![0.0; solids.len() + shafts];
+        let cages = usize::from(scene.has_cages_in_elements());
+        if shafts + cages > 0 {
+            solids = vec![0.0; solids.len() + shafts + cages];
         }
         let fields = fields_size(end, interval, run.fields_interval, &solids);
         lines.push(("fields", fields.to_string()));
@@ -296,7 +297,11 @@ fn bodies(scene: &Scene) -> Vec<(&'static str, String)> {
         None => "fixed in space".into(),
     };
     let cage = match &dynamics.cage {
-        CageInRun::Body(_) => "a rigid body with six coordinates".into(),
+        CageInRun::Body(_) => match dynamics.flexible_cage.as_ref().map(|cage| cage.method) {
+            Some(CageMethod::Explicit) => "elements in explicit steps".into(),
+            Some(CageMethod::Reduced) => "modes in a frame with six coordinates".into(),
+            _ => "a rigid body with six coordinates".into(),
+        },
         CageInRun::LeftOut(reason) => format!("left out: {reason}"),
     };
     let balls = "six coordinates each, with gyroscopic and centrifugal effects";

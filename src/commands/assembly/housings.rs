@@ -24,6 +24,7 @@ use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::build::about::About;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::bushing::BushingElements;
+use bearing_dynamics::scene::build::cage::BuiltCage;
 use bearing_dynamics::scene::build::shaft::ShaftElements;
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
 use bearing_dynamics::solids::condensation::{CondensedBore, beyond_normals};
@@ -58,6 +59,7 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
     let in_elements = [
         (scene.has_bushings_in_elements(), "a bushing", "the bushing's table"),
         (scene.has_shafts_in_elements(), "a shaft", "[body.NAME.beam.mesh]"),
+        (scene.has_cages_in_elements(), "a cage", "[bearing.cage] (`body`)"),
     ];
     if let Some((_, what, table)) = in_elements.into_iter().find(|(is, ..)| *is)
         && method.is_some_and(|of| of != HousingMethod::Explicit)
@@ -165,12 +167,13 @@ pub fn explicit<'p>(
     scene: &AssemblyScene,
     mut assembly: Assembly,
     housings: &[Housing],
-    (bushings, shafts): (&'p [BushingElements], &[ShaftElements]),
+    (bushings, shafts, cages): (&'p [BushingElements], &[ShaftElements], &[BuiltCage]),
     threads: usize,
 ) -> Fallible<HousedParts<'p>> {
     let start = start_of_steps(&mut assembly, housings)?;
     let mut parts = parts(scene, assembly, housings, start, threads)?;
     parts.solids.extend(shafts.iter().map(|shaft| shaft.part.clone()));
+    parts.solids.extend(cages.iter().filter_map(|cage| cage.part().cloned()));
     Ok(HousedParts { bushings: bushings.iter().map(BushingElements::part).collect(), ..parts })
 }
 

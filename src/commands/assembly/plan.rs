@@ -15,12 +15,13 @@ use bearing_dynamics::assembly::loads::Rotation;
 use bearing_dynamics::assembly::plan::motion;
 use bearing_dynamics::assembly::plan::motion::Planned;
 use bearing_dynamics::assembly::plan::rubber;
-use bearing_dynamics::assembly::plan::solid::{Method, stepped_shaft};
+use bearing_dynamics::assembly::plan::solid::{Method, stepped_cage, stepped_shaft};
 use bearing_dynamics::assembly::plan::statics;
 use bearing_dynamics::assembly::plan::statics::ASKED_FOR;
 use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
 use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
 use bearing_dynamics::equilibrium::statics::StaticProblem;
+use bearing_dynamics::motion::coupling::SolidPart;
 use bearing_dynamics::motion::integrator_choice::Choice;
 use bearing_dynamics::motion::simulation::Start;
 use bearing_dynamics::numeric::clock::{rounded, to_digits, whole_number};
@@ -28,6 +29,7 @@ use bearing_dynamics::output::fields::size::{fields_size, file_bytes};
 use bearing_dynamics::output::session::{RunRequest, table_size};
 use bearing_dynamics::scene::build::assembly::{AssemblyScene, PlacedBearing};
 use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
+use bearing_dynamics::scene::build::cage::BuiltCage;
 use bearing_dynamics::scene::build::shaft::{ShaftElements, take_shafts};
 use bearing_dynamics::scene::build::statics::static_problem;
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
@@ -73,7 +75,9 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         notes.extend(condensing_notes(lists, &housings));
     }
     // `of_steps` reports the steps of scenes with bushings or shafts in elements.
-    let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
+    let in_elements = scene.has_bushings_in_elements()
+        || scene.has_shafts_in_elements()
+        || scene.has_cages_in_elements();
     let has_step_note = housings.is_empty() || in_elements;
     if let (Some(settings), false) = (scene.run(), has_step_note) {
         notes.push(explicit_note(lists, &housings, settings));
@@ -102,11 +106,11 @@ fn of_steps(
         Some(shapes) => shapes.assembly.clone(),
         None => lists.assembly()?.clone(),
     };
-    scene.add_cage_nodes(&mut assembly)?;
+    let cages = scene.add_cage_nodes(&mut assembly)?;
     let bushings = take_bushings(scene, &mut assembly)?;
     let shafts = take_shafts(scene, &mut assembly)?;
-    let elements = (&bushings[..], &shafts[..]);
-    let in_elements = !(bushings.is_empty() && shafts.is_empty());
+    let elements = (&bushings[..], &shafts[..], &cages[..]);
+    let in_elements = !(bushings.is_empty() && shafts.is_empty()) || scene.has_cages_in_elements();
     // Races without their housings or bushings would have no support.
     let alone = !in_elements && (housings.is_empty() || reduced.is_some());
     let (request, choice) = if in_elements {
@@ -128,7 +132,10 @@ fn of_steps(
     }
     notes.push(size_line(&assembly, &request));
     let of_shafts = shafts.iter().map(|shaft| file_bytes(&shaft.mesh, false));
-    let solids: Vec<f64> = of_housings(housings).into_iter().chain(of_shafts).collect();
+    let of_cages = cages.iter().filter(|cage| cage.part().is_some());
+    let of_cages = of_cages.map(|cage| file_bytes(&cage.mesh, false));
+    let solids: Vec<f64> =
+        of_housings(housings).into_iter().chain(of_shafts).chain(of_cages).collect();
     notes.extend(fields_line(settings, &solids));
     Ok((items, notes))
 }
@@ -166,11 +173,11 @@ fn imbalance_text(scene: &AssemblyScene, shaft: &ShaftElements) -> Option<String
     })
 }
 
-pub type Elements<'e> = (&'e [BushingElements], &'e [ShaftElements]);
+pub type Elements<'e> = (&'e [BushingElements], &'e [ShaftElements], &'e [BuiltCage]);
 
 pub fn stages(
     scene: &AssemblyScene,
-    (housings, (bushings, shafts)): (&[Housing], Elements),
+    (housings, (bushings, shafts, cages)): (&[Housing], Elements),
     assembly: &Assembly,
     request: &RunRequest,
     choice: Option<&Choice>,
@@ -182,7 +189,9 @@ pub fn stages(
     let left_out: Vec<Option<String>> = scene.bearings.iter().map(left_out).collect();
     let left_out: Vec<Option<&str>> = left_out.iter().map(Option::as_deref).collect();
     let mut options = request.options;
-    if !(housings.is_empty() && bushings.is_empty() && shafts.is_empty()) {
+    let stepped: Vec<(usize, &SolidPart)> =
+        cages.iter().filter_map(|cage| Some((cage.bearing, cage.part()?))).collect();
+    if !(housings.is_empty() && bushings.is_empty() && shafts.is_empty() && stepped.is_empty()) {
         // Balls start in equilibrium with races fixed in their housings.
         options.start = Start::Equilibrium;
     }
@@ -202,8 +211,12 @@ pub fn stages(
         let of = (&shaft.name[..], &shaft.part);
         solids.extend(stepped_shaft(assembly, housings.len() + index, of, &shaft.mesh_text()));
     }
-    for (index, bushing) in bushings.iter().enumerate() {
+    for (index, (bearing, part)) in stepped.iter().enumerate() {
         let index = housings.len() + shafts.len() + index;
+        solids.extend(stepped_cage(assembly, &assembly.bearings[*bearing], index, part));
+    }
+    for (index, bushing) in bushings.iter().enumerate() {
+        let index = housings.len() + shafts.len() + stepped.len() + index;
         solids.extend(rubber::bonded(&bushing.planned(index)));
     }
     let mut items = motion::items(Planned {

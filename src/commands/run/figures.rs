@@ -61,7 +61,7 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
         Motion::Housed(housed) => {
             let of_bearing = housed.simulation.steps;
             let mut text = format!("{done} in {seconds:.2} s; ");
-            for kind in ["housing", "shaft"] {
+            for kind in ["housing", "shaft", "cage"] {
                 let of_kind = housed.solids.iter().filter(|part| part.kind() == kind);
                 let steps: u64 = of_kind.map(|part| part.solid.steps).sum();
                 if steps > 0 {

@@ -18,7 +18,7 @@ use bearing_dynamics::output::session::{
 };
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
-use bearing_dynamics::scene::build::cage::BuiltCage;
+use bearing_dynamics::scene::build::cage::{BuiltCage, CageForm};
 use bearing_dynamics::scene::build::motion::DynamicsError;
 use bearing_dynamics::scene::build::shaft::{ShaftElements, take_shafts};
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
@@ -129,7 +129,9 @@ impl<'s> Prepared<'s> {
         let housings = housings::prepare(document, scene)?;
         housings::refuse(document, scene, &housings)?;
         let lists = Box::new(Lists::of(scene));
-        let in_elements = scene.has_bushings_in_elements() || scene.has_shafts_in_elements();
+        let in_elements = scene.has_bushings_in_elements()
+            || scene.has_shafts_in_elements()
+            || scene.has_cages_in_elements();
         let method = match scene.housing_method() {
             None if in_elements => SolutionMethod::Explicit,
             None => SolutionMethod::Rigid,
@@ -170,11 +172,12 @@ impl<'s> Prepared<'s> {
                 housings,
                 bushings,
                 shafts,
+                cages,
                 method: SolutionMethod::Explicit,
                 ..
             } => {
                 let assembly = (**assembly).clone();
-                let elements = (&bushings[..], &shafts[..]);
+                let elements = (&bushings[..], &shafts[..], &cages[..]);
                 let parts = housings::explicit(lists.scene, assembly, housings, elements, threads)?;
                 Parts::Housed(Box::new(parts))
             }
@@ -273,7 +276,10 @@ impl<'s> Prepared<'s> {
         if let Prepared::Bearings { housings, shafts, cages, .. } = self
             && let Some(cage) = solid.checked_sub(housings.len() + shafts.len())
         {
-            return cages.get(cage).and_then(|cage| cage_fields(cage, &session.motion));
+            let reduced = cages.get(cage).and_then(|cage| cage_fields(cage, &session.motion));
+            if reduced.is_some() {
+                return reduced;
+            }
         }
         let displacement = session.displacement(solid);
         let velocity = match &mut session.motion {
@@ -302,7 +308,8 @@ impl<'s> Prepared<'s> {
         }
         match self {
             Prepared::Bearings { housings, shafts, cages, .. } => {
-                let flexible = cages.iter().filter(|cage| !cage.reduction.shapes.is_empty());
+                let is_flexible = |cage: &&BuiltCage| !matches!(cage.form, CageForm::Rigid);
+                let flexible = cages.iter().filter(is_flexible);
                 let all = housings.iter().map(of_housing).chain(shafts.iter().map(of_shaft));
                 all.chain(flexible.map(of_cage)).collect()
             }
@@ -360,6 +367,7 @@ impl<'s> Prepared<'s> {
                 housings,
                 bushings,
                 shafts,
+                cages,
                 method,
                 ..
             } => {
@@ -369,7 +377,7 @@ impl<'s> Prepared<'s> {
                         plan::of_sequence(lists, housings, settings)?
                     }
                     _ => {
-                        let elements = (&bushings[..], &shafts[..]);
+                        let elements = (&bushings[..], &shafts[..], &cages[..]);
                         plan::stages(scene, (housings, elements), assembly, request, choice)
                     }
                 };
@@ -423,12 +431,13 @@ pub fn request(scene: &Scene, settings: &RunSettings) -> RunRequest {
 
 /// Deformation of a cage in its own axes, without its rigid motion.
 fn cage_fields(cage: &BuiltCage, motion: &Motion) -> Option<Fields> {
-    let Motion::Bearing(simulation) = motion else { return None };
+    let CageForm::Reduced(reduction) = &cage.form else { return None };
+    let simulation = motion.bearing()?;
     let system = &simulation.system;
     let nodes = system.assembly.bearings[cage.bearing].cage.as_ref()?.nodes.as_ref()?;
     let solid = &system.assembly.floating[nodes.floating];
     let modes = solid.split(system.deformed(&simulation.state, nodes.floating));
-    let [displacement, velocity] = modes.map(|of| cage.reduction.displacement(of));
+    let [displacement, velocity] = modes.map(|of| reduction.displacement(of));
     (!displacement.is_empty()).then_some(Fields { displacement, velocity: Some(velocity) })
 }
 

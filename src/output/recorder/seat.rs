@@ -101,7 +101,7 @@ pub fn prefix(name: &Option<String>) -> String {
 /// springs and their energies.
 pub(super) fn explicit_columns(parts: &HousedParts) -> Vec<Column> {
     let HousedParts { solids, seats, bushings, .. } = parts;
-    let housings = solids.iter().filter(|solid| solid.shaft.is_none());
+    let housings = solids.iter().filter(|solid| solid.shaft.is_none() && solid.cage.is_none());
     let of_solids: Vec<String> = housings.map(|solid| prefix(&solid.name)).collect();
     let by_solid: Vec<&Seat> = (0..solids.len())
         .flat_map(|index| seats.iter().filter(move |s| s.solid == index))
@@ -177,7 +177,7 @@ impl Recorder {
         self.record(&housed.simulation, &snapshot.simulation);
         // In the order of [`explicit_columns`].
         let parts = || housed.solids.iter().zip(&snapshot.solids);
-        let housings = || parts().filter(|(part, _)| part.shaft.is_none());
+        let housings = || parts().filter(|(part, _)| part.kind() == "housing");
         let solids = || housings().map(|(_, solid)| &solid.ledger);
         let seats = || snapshot.solids.iter().flat_map(|solid| &solid.seats);
         let values = &mut self.values;

@@ -1,4 +1,4 @@
-//! Columns of a shaft in elements: its probes, its energies, and those of its joints with races.
+//! Columns of a shaft or cage in elements: its probes, its energies, and those of its joints or contacts.
 
 use super::Recorder;
 use crate::motion::coupling::SolidPart;
@@ -18,8 +18,23 @@ const ENERGIES: [&str; 8] = [
     "work_on_races",
 ];
 
-/// Columns of a shaft in elements; empty for other solids.
+/// Energy columns of a cage, J.
+const OF_CAGE: [&str; 7] = [
+    "energy_strain",
+    "energy_kinetic",
+    "work_loads",
+    "work_damping",
+    "energy_contacts",
+    "heat_contacts",
+    "work_on_balls_and_race",
+];
+
+/// Columns of a shaft or cage in elements; empty for other solids.
 pub(super) fn columns(part: &SolidPart) -> Vec<Column> {
+    if part.cage.is_some() {
+        let name = part.name.as_deref().unwrap_or("cage");
+        return OF_CAGE.map(|energy| Column::new(format!("{name}_{energy}"), "J")).to_vec();
+    }
     let Some(shaft) = &part.shaft else { return Vec::new() };
     let name = part.name.as_deref().unwrap_or("shaft");
     let of = |section: &str, axis| Column::new(format!("{name}_{section}_{axis}"), "m");
@@ -33,11 +48,23 @@ pub(super) fn columns(part: &SolidPart) -> Vec<Column> {
 impl Recorder {
     /// Adds the values in the order of [`columns`].
     pub(super) fn record_shaft(&mut self, part: &SteppedSolid, now: &SolidSnapshot) {
+        let of_joints = |of: fn(&JointSnapshot) -> f64| -> f64 { now.joints.iter().map(of).sum() };
+        let ledger = &now.ledger;
+        if part.cage.is_some() {
+            self.values.extend([
+                ledger.energy.strain,
+                ledger.energy.kinetic,
+                ledger.external_work,
+                ledger.damping_work,
+                of_joints(|contacts| contacts.stored),
+                of_joints(|contacts| contacts.heat),
+                of_joints(|contacts| contacts.work + contacts.to_come),
+            ]);
+            return;
+        }
         let Some(shaft) = &part.shaft else { return };
         let centres = shaft.probe_centres(&part.solid);
         self.values.extend(centres.flat_map(|[_, y, z]| [y, z]));
-        let of_joints = |of: fn(&JointSnapshot) -> f64| -> f64 { now.joints.iter().map(of).sum() };
-        let ledger = &now.ledger;
         self.values.extend([
             ledger.energy.strain,
             ledger.energy.kinetic,

@@ -161,7 +161,7 @@ impl SolidEntry {
 impl ExchangeEntry {
     pub(super) fn of(kept: &CouplingCheckpoint, coupling_steps: &CouplingSteps) -> ExchangeEntry {
         let lengths: Vec<usize> = kept.bushings.iter().map(Vec::len).collect();
-        let shafts: Vec<Vec<f64>> = kept.solids.iter().map(|part| part.shaft.clone()).collect();
+        let shafts: Vec<Vec<f64>> = kept.solids.iter().map(|part| part.attached.clone()).collect();
         let file = || bushings_name(kept.exchanges);
         let seats = |part: &SteppedCheckpoint| part.seats.iter().map(SeatEntry::of).collect();
         ExchangeEntry {
@@ -308,9 +308,10 @@ fn exchange(
         if seats.len() != parts.seats.iter().filter(|seat| seat.solid == index).count() {
             return Err(MISSING_PART);
         }
-        let shaft = exchange.shafts.get(index).cloned().unwrap_or_default();
-        let joints = parts.solids[index].shaft.as_ref().map(|of| of.joints.len());
-        if shaft.len() != joints.map_or(0, |joints| 2 * joints + 1) {
+        let attached = exchange.shafts.get(index).cloned().unwrap_or_default();
+        let part = &parts.solids[index];
+        let of_shaft = part.shaft.as_ref().map(|of| 2 * of.joints.len() + 1);
+        if attached.len() != of_shaft.or(part.cage.as_ref().map(|_| 2)).unwrap_or(0) {
             return Err(MISSING_PART);
         }
         let from: usize = nodes[..index].iter().sum();
@@ -318,7 +319,7 @@ fn exchange(
         solids.push(SteppedCheckpoint {
             solid: entry.checkpoint(folder, nodes.iter().sum(), rows)?,
             seats: seats.iter().map(SeatEntry::checkpoint).collect(),
-            shaft,
+            attached,
         });
     }
     let mut seats: Vec<_> = solids.iter_mut().flat_map(|part| &mut part.seats).collect();

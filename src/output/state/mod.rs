@@ -147,6 +147,9 @@ pub fn fingerprint(parts: &Parts, request: &RunRequest) -> String {
                 if let Some(shaft) = &solid.shaft {
                     hash.update(format!("{shaft:?}"));
                 }
+                if let Some(cage) = &solid.cage {
+                    hash.update(format!("{cage:?}"));
+                }
             }
             // Keeps the fingerprint of frictionless bores independent of the friction field.
             let seats = format!("{:?}", parts.seats).replace(", friction: None", "");

@@ -174,7 +174,42 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
             section.insert(format!("{name}_slip"), quantity("slip", slip, "1")?);
         }
     }
+    if let Some(whirl) = cage_whirl(table, &prefix) {
+        section.insert("cage_mean_distance".into(), quantity("distance", whirl.distance, "m")?);
+        section.insert("cage_whirl_turns".into(), quantity("turns", whirl.turns, "1")?);
+        section.insert("cage_rest".into(), quantity("rest", whirl.rest, "1")?);
+    }
     Ok(Some(Value::Object(section)))
+}
+
+/// Motion of a cage's centre about the axis of the outer race over the window.
+struct Whirl {
+    /// Mean distance, m.
+    distance: f64,
+    /// Turns about the axis.
+    turns: f64,
+    /// Distance of the mean place over the mean distance: 1 at rest, 0 for a full whirl.
+    rest: f64,
+}
+
+/// `None` without the cage's columns.
+fn cage_whirl(table: &RunTable, prefix: &str) -> Option<Whirl> {
+    let column = |name: &str| table.windowed(&format!("{prefix}{name}"));
+    let [cage_y, cage_z] = [column("cage_y")?, column("cage_z")?];
+    let (outer_y, outer_z) = match (column("outer_y"), column("outer_z")) {
+        (Some(y), Some(z)) => (y, z),
+        _ => {
+            let still = vec![0.0; cage_y.len()];
+            (still.clone(), still)
+        }
+    };
+    let places = || (0..cage_y.len()).map(|i| [cage_y[i] - outer_y[i], cage_z[i] - outer_z[i]]);
+    let count = cage_y.len() as f64;
+    let distance = places().map(|[y, z]| y.hypot(z)).sum::<f64>() / count;
+    let mean = places().fold([0.0; 2], |sum, [y, z]| [sum[0] + y / count, sum[1] + z / count]);
+    let angle = |[[y, z], [v, w]]: [[f64; 2]; 2]| (y * w - z * v).atan2(y * v + z * w);
+    let turns = places().zip(places().skip(1)).map(|(a, b)| angle([a, b])).sum::<f64>() / TAU;
+    Some(Whirl { distance, turns, rest: mean[0].hypot(mean[1]) / distance })
 }
 
 /// Largest values over all steps, including those between rows.

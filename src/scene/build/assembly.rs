@@ -18,6 +18,7 @@ use crate::scene::build::motion::{DynamicsError, dynamic_problem};
 use crate::scene::build::sensors::SceneSensor;
 use crate::scene::build::statics::still_lists;
 use crate::scene::resolve::housing_scene::{HousedScene, HousingMethod, HousingSettings};
+use crate::scene::resolve::resolved::CageMethod;
 use crate::scene::resolve::resolved::{DefaultUsed, RunSettings, Scene};
 use crate::scene::resolve::solid_scene::SolidScene;
 use crate::scene::tables::assembly::OWN_RACES;
@@ -299,6 +300,13 @@ impl AssemblyScene {
     pub fn has_shafts_in_elements(&self) -> bool {
         let mut beams = self.bodies.iter().filter_map(|body| body.beam.as_deref());
         beams.any(|beam| beam.in_elements.is_some())
+    }
+
+    /// Returns whether elements of a cage move in a run.
+    pub fn has_cages_in_elements(&self) -> bool {
+        let mut cages =
+            self.bearings.iter().filter_map(|of| of.scene.dynamics.flexible_cage.as_ref());
+        cages.any(|cage| cage.method == CageMethod::Explicit)
     }
 
     pub fn run(&self) -> Option<&RunSettings> {

@@ -1,7 +1,8 @@
-//! Cages that touch by the nodes of their mesh: the mesh, its modes in a floating frame, and its contact nodes.
+//! Cages that touch by the nodes of their mesh: the mesh, its contact nodes, and its modes in a floating frame or its
+//! elements.
 
 use crate::assembly::lists::{Assembly, Mobility};
-use crate::ch2_housing::bearing::cage::Guidance;
+use crate::ch2_housing::bearing::cage::{CageContacts, Guidance};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
 use crate::kinematics::vec3::{Vec3, add_scaled, dot, norm, scale, sub};
@@ -11,7 +12,9 @@ use crate::mesh::TetMesh;
 use crate::mesh::error::MeshError;
 use crate::mesh::measure::{Share, tributary_areas};
 use crate::mesh::tet_mesh::Face;
-use crate::scene::resolve::resolved::{CageInRun, Dynamics, FlexibleCage};
+use crate::motion::coupling::SolidPart;
+use crate::motion::explicit_cage::CagePart;
+use crate::scene::resolve::resolved::{CageInRun, CageMethod, Dynamics, FlexibleCage};
 use crate::solids::floating_reduction::{FloatingReduction, Patch, reduce_floating};
 use crate::solids::model::{SolidError, SolidModel, SolidProblem};
 use crate::solids::modes::ModeError;
@@ -40,7 +43,26 @@ pub struct BuiltCage {
     pub name: String,
     pub mesh: TetMesh,
     pub model: SolidModel,
-    pub reduction: FloatingReduction,
+    pub form: CageForm,
+}
+
+/// How a cage with a mesh moves.
+#[derive(Clone, Debug)]
+pub enum CageForm {
+    Rigid,
+    Reduced(FloatingReduction),
+    /// In explicit steps.
+    Elements(Box<SolidPart>),
+}
+
+impl BuiltCage {
+    /// `None` for a cage without steps of its own.
+    pub fn part(&self) -> Option<&SolidPart> {
+        match &self.form {
+            CageForm::Elements(part) => Some(part),
+            _ => None,
+        }
+    }
 }
 
 /// Replaces the contacts of cages whose scene asks for a mesh, bearing by bearing, by those of its nodes.
@@ -66,13 +88,15 @@ fn add(
     bearing: usize,
     flexible: &FlexibleCage,
 ) -> Result<BuiltCage, CageMeshError> {
+    let name = format!("{}cage", all.bearings[bearing].prefix());
     let phase = all.bearings[bearing].ball_phase;
     let gravity = all.gravity;
     let Some(caged) = &mut all.bearings[bearing].cage else {
         unreachable!("a cage in a run is a body of its bearing");
     };
     let contacts = caged.contacts;
-    let mut mesh = flexible.shape.solid(&flexible.cells)?.quadratic()?.mesh;
+    let mesh = flexible.shape.solid(&flexible.cells)?;
+    let mut mesh = if flexible.order == 1 { mesh.mesh } else { mesh.quadratic()?.mesh };
     turn(&mut mesh, phase);
     let problem = SolidProblem {
         nodes: mesh.nodes.clone(),
@@ -87,10 +111,51 @@ fn add(
     };
     let model = SolidModel::new(problem)?;
     let surfaces = Surfaces::new(&mesh, &contacts.guidance, contacts.pocket_radius);
-    let patches = if flexible.corrections { surfaces.patches(&mesh) } else { Vec::new() };
+    let body = caged.body;
+    if flexible.method == CageMethod::Explicit {
+        let total: f64 = model.mass.iter().sum();
+        let weighted = model.mass.iter().zip(&mesh.nodes);
+        let centre = weighted.fold([0.0; 3], |sum, (m, at)| add_scaled(sum, m / total, *at));
+        let nodes = contact_nodes(&contacts, flexible, &mesh, &surfaces, (centre, &[]));
+        caged.in_elements = true;
+        all.bodies[body].mobility = Mobility::Carried;
+        let part = SolidPart {
+            cage: Some(CagePart { bearing, nodes, centre }),
+            ..SolidPart::undeformed(Some(name.clone()), model.clone())
+        };
+        return Ok(BuiltCage {
+            bearing,
+            name,
+            mesh,
+            model,
+            form: CageForm::Elements(Box::new(part)),
+        });
+    }
+    let patches =
+        if flexible.corrections { surfaces.patches(&mesh, &contacts) } else { Vec::new() };
     let reduction = reduce_floating(&model, flexible.modes_to, &patches)?;
     let index = all.floating.len();
-    let centre = reduction.centre;
+    let with_shapes = (reduction.centre, &reduction.shapes[..]);
+    let nodes = contact_nodes(&contacts, flexible, &mesh, &surfaces, with_shapes);
+    caged.nodes = Some(CageNodes { floating: index, ..nodes });
+    let modes = reduction.shapes.len();
+    let [xx, yy, zz, ..] = reduction.frame.inertia;
+    let inertia = Inertia { mass: reduction.frame.mass, axial: xx, transverse: 0.5 * (yy + zz) };
+    all.bodies[body].mobility = Mobility::Free(inertia);
+    let gauges = if modes > 0 { gauges(&mesh, &surfaces.outer, &reduction) } else { Vec::new() };
+    all.floating.push(FloatingSolid { body, frame: reduction.frame.clone(), gauges });
+    let form = if modes > 0 { CageForm::Reduced(reduction) } else { CageForm::Rigid };
+    Ok(BuiltCage { bearing, name, mesh, model, form })
+}
+
+/// Contact nodes of a cage with this centre of mass and these displacements by mode.
+fn contact_nodes(
+    contacts: &CageContacts,
+    flexible: &FlexibleCage,
+    mesh: &TetMesh,
+    surfaces: &Surfaces,
+    (centre, shapes): (Vec3, &[Vec<Vec3>]),
+) -> CageNodes {
     let group = |nodes: &[(u32, f64)]| {
         let list: Vec<u32> = nodes.iter().map(|(node, _)| *node).collect();
         let area = |node: u32| {
@@ -98,7 +163,7 @@ fn add(
         };
         let place = |node: u32| sub(mesh.nodes[node as usize], centre);
         let stiffness = |node: u32| flexible.penalty.of_node(area(node));
-        NodeGroup::new(&list, place, stiffness, &reduction.shapes)
+        NodeGroup::new(&list, place, stiffness, shapes)
     };
     let pockets: Vec<PocketNodes> =
         surfaces.pockets.iter().map(|nodes| PocketNodes::new(group(nodes))).collect();
@@ -109,9 +174,9 @@ fn add(
     let sector = |place: &Vec3| (azimuth(*place) / TAU * SECTORS as f64) as usize;
     let sectors = (0..=SECTORS).map(|of| land.places.partition_point(|place| sector(place) < of));
     let groups = || pockets.iter().map(|pocket| &pocket.group).chain([&land]);
-    let modes = reduction.shapes.len();
-    caged.nodes = Some(CageNodes {
-        floating: index,
+    let modes = shapes.len();
+    CageNodes {
+        floating: 0,
         largest: (0..modes)
             .map(|mode| groups().map(|group| group.largest(mode)).fold(0.0, f64::max))
             .collect(),
@@ -124,15 +189,7 @@ fn add(
         regularisation_speed: contacts.regularisation_speed,
         pockets,
         land,
-    });
-    let body = caged.body;
-    let [xx, yy, zz, ..] = reduction.frame.inertia;
-    let inertia = Inertia { mass: reduction.frame.mass, axial: xx, transverse: 0.5 * (yy + zz) };
-    all.bodies[body].mobility = Mobility::Free(inertia);
-    let gauges = if modes > 0 { gauges(&mesh, &surfaces.outer, &reduction) } else { Vec::new() };
-    all.floating.push(FloatingSolid { body, frame: reduction.frame.clone(), gauges });
-    let name = format!("{}cage", all.bearings[bearing].prefix());
-    Ok(BuiltCage { bearing, name, mesh, model, reduction })
+    }
 }
 
 /// Rotates a mesh about X, so that its first pocket is at the azimuth of ball 1.
@@ -151,6 +208,9 @@ struct Surfaces {
     /// Nodes of the outer surface.
     outer: Vec<u32>,
 }
+
+/// Radius of the patch where a ball meets its pocket, in pocket radii.
+const PATCH: f64 = 0.6;
 
 impl Surfaces {
     fn new(mesh: &TetMesh, guidance: &Guidance, pocket_radius: f64) -> Surfaces {
@@ -175,8 +235,9 @@ impl Surfaces {
         }
     }
 
-    /// Pressure on both walls of each pocket, ahead and behind, and radial forces on each rail at the pockets.
-    fn patches(&self, mesh: &TetMesh) -> Vec<Patch> {
+    /// Pressure where the ball meets both walls of each pocket, ahead and behind, and radial forces on each rail at the
+    /// pockets.
+    fn patches(&self, mesh: &TetMesh, contacts: &CageContacts) -> Vec<Patch> {
         let place = |node: u32| mesh.nodes[node as usize];
         let mut patches = Vec::new();
         for nodes in &self.pockets {
@@ -184,12 +245,18 @@ impl Surfaces {
             let towards = direction(&group);
             let ahead = [0.0, -towards[2], towards[1]];
             for sign in [1.0, -1.0] {
+                let met = add_scaled(
+                    scale(towards, contacts.pocket_pitch_radius),
+                    sign * contacts.pocket_radius,
+                    ahead,
+                );
+                let reach = PATCH * contacts.pocket_radius;
                 let patch = nodes.iter().filter_map(|&(node, area)| {
                     let at = place(node);
+                    let share = 1.0 - norm(sub(at, met)) / reach;
                     let mut out = add_scaled(at, -dot(at, towards), towards);
                     out = scale(out, 1.0 / norm(out));
-                    let share = sign * dot(out, ahead);
-                    (share > 0.0).then(|| (node, scale(out, area * share * share)))
+                    (share > 0.0).then(|| (node, scale(out, area * share)))
                 });
                 patches.push(patch.collect());
             }

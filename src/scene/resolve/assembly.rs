@@ -78,7 +78,10 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     refuse_shared_columns(document, &scene)?;
     refuse_free_bodies(document, &scene)?;
     refuse_springs_on_elements(document, &scene)?;
-    if scene.housing_method().is_none() && !scene.has_shafts_in_elements() {
+    if scene.housing_method().is_none()
+        && !scene.has_shafts_in_elements()
+        && !scene.has_cages_in_elements()
+    {
         refuse_fields(document)?;
     }
     if scene.housing_method() == Some(HousingMethod::QuasiStatic) {

@@ -9,7 +9,7 @@ use crate::mesh;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::dynamics::{check_inertia, millimetres};
-use crate::scene::resolve::resolved::{Cage, CageInRun, Dimensions, FlexibleCage};
+use crate::scene::resolve::resolved::{Cage, CageInRun, CageMethod, Dimensions, FlexibleCage};
 use crate::scene::text::value::Checked;
 use std::f64::consts::PI;
 
@@ -229,14 +229,19 @@ pub(crate) fn flexible(
     geometry: &BearingGeometry,
     cage: &CageInRun,
 ) -> Result<Option<FlexibleCage>, SceneError> {
-    let reduced = reader.choice_if_given("bearing.cage.body") == Some("reduced");
+    let method = match reader.choice_if_given("bearing.cage.body") {
+        Some("reduced") => CageMethod::Reduced,
+        Some("explicit") => CageMethod::Explicit,
+        _ => CageMethod::Rigid,
+    };
+    let (reduced, flexible) = (method == CageMethod::Reduced, method != CageMethod::Rigid);
     let at = reader.choice_if_given("bearing.cage.contact.at");
     let path = "bearing.cage.contact.stiffness";
     let per_area = match reader.document.value(path) {
         Some(Checked::Either(2, stiffness)) => Some(*stiffness),
         _ => None,
     };
-    let by_nodes = reduced || at == Some("nodes");
+    let by_nodes = flexible || at == Some("nodes");
     if !by_nodes {
         if per_area.is_some() {
             let reason = "a stiffness per area is for a cage that touches by its nodes";
@@ -248,9 +253,9 @@ pub(crate) fn flexible(
     let refuse = |key: &str, reason: &str, advice: &str| {
         Err(reader.document.refused(&format!("bearing.cage.{key}"), reason, advice))
     };
-    if reduced && at == Some("surfaces") {
+    if flexible && at == Some("surfaces") {
         let advice = "leave it out, or write `body = \"rigid\"`";
-        return refuse("contact.at", "a reduced cage touches by the nodes of its mesh", advice);
+        return refuse("contact.at", "a flexible cage touches by the nodes of its mesh", advice);
     }
     if reader.choice_if_given("bearing.cage.contact.law") == Some("hertz") {
         let advice = "write `law = \"penalty\"`, or leave it out";
@@ -282,10 +287,11 @@ pub(crate) fn flexible(
         * pocket_volume(contacts.pocket_radius, contacts.ring[0], contacts.ring[1]);
     let [inner, outer] = contacts.ring;
     let volume = PI * (outer * outer - inner * inner) * contacts.length - pockets;
+    let order = count(reader, "order", 2);
     let mut given = |key: &str, usual: f64, shown: &str, reason: &str| {
         let path = format!("bearing.cage.{key}");
         reader.given_number(&path).unwrap_or_else(|| {
-            if reduced {
+            if reduced || (flexible && key != "modes_to") {
                 reader.note(&path, shown, reason);
             }
             usual
@@ -315,6 +321,8 @@ pub(crate) fn flexible(
         // The mesh has the given mass.
         density: inertia.mass / volume,
         damping,
+        method,
+        order,
         modes_to: if reduced { modes_to } else { 0.0 },
         corrections: reduced && corrections,
     }))

@@ -101,6 +101,14 @@ pub enum CageInRun {
     LeftOut(String),
 }
 
+/// How a cage with a mesh moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CageMethod {
+    Rigid,
+    Reduced,
+    Explicit,
+}
+
 /// A cage that touches by the nodes of its mesh, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlexibleCage {
@@ -112,6 +120,9 @@ pub struct FlexibleCage {
     pub density: f64,
     /// 1/s.
     pub damping: f64,
+    pub method: CageMethod,
+    /// Elements of four nodes (1) or ten (2).
+    pub order: usize,
     /// Hz; zero for a rigid cage.
     pub modes_to: f64,
     /// Static correction modes for its contacts.

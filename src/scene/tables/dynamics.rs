@@ -56,7 +56,7 @@ const CAGE_STIFFNESS: Kind = Kind::Either(&[
     Kind::Quantity(HertzStiffness, above(0.0, 1e18, "N/m^1.5")),
     Kind::Quantity(StiffnessPerArea, above(0.0, 1e21, "N/m^3")),
 ]);
-pub const CAGE_BODIES: &[&str] = &["rigid", "reduced"];
+pub const CAGE_BODIES: &[&str] = &["rigid", "reduced", "explicit"];
 pub const CAGE_CONTACTS: &[&str] = &["surfaces", "nodes"];
 const OF_NODES: Need = Depends("4, 2 and 2 if the cage touches by its nodes");
 const STEEL_CAGE: Need = Depends("steel: 210 GPa and 0.3");
@@ -107,15 +107,16 @@ pub(crate) const KEYS: &[Key] = &[
         .hint("the source has 2e8 N/m (5.8)").example_of("\"2e8 N/m\""),
     Key::new("bearing.cage.body", Kind::Choice(CAGE_BODIES),
         Default { value: "rigid", reason: "a flexible cage costs several times as much" },
-        "Cage as a rigid body, or as a flexible one that is `reduced` to modes in a rotating frame. A reduced cage touches by the nodes of its mesh."),
+        "Cage as a rigid body, or as a flexible one: `reduced` to modes in a rotating frame, or in `explicit` steps of its elements, the source's way and far dearer. A flexible cage touches by the nodes of its mesh."),
     Key::new("bearing.cage.contact.at", Kind::Choice(CAGE_CONTACTS),
-        Depends("`surfaces` of a rigid cage, `nodes` of a reduced one"),
+        Depends("`surfaces` of a rigid cage, `nodes` of a flexible one"),
         "Contact points of the cage: its geometric `surfaces`, or the `nodes` of its mesh (5.3.2). Nodes of a pocket touch their ball, nodes of the rails outside the pockets' width touch the land of the guiding race."),
     Key::new("bearing.cage.mesh.quarter", Kind::Integer { low: 2, high: 100 }, OF_NODES, "Cells along a quarter of a pocket's edge.").example_of("4"),
     Key::new("bearing.cage.mesh.bar", Kind::Integer { low: 1, high: 100 }, OF_NODES, "Cells from a pocket's edge to the middle of the bar.").example_of("2"),
     Key::new("bearing.cage.mesh.wall", Kind::Integer { low: 1, high: 100 }, OF_NODES, "Cells through the wall.").example_of("2"),
-    quantity("bearing.cage.youngs_modulus", MODULUS, STEEL_CAGE, "Young's modulus of a reduced cage.").hint(MODULUS_HINT),
-    Key::new("bearing.cage.poisson_ratio", POISSON, STEEL_CAGE, "Poisson's ratio of a reduced cage.").hint(POISSON_HINT),
+    Key::new("bearing.cage.mesh.order", Kind::Integer { low: 1, high: 2 }, Depends("2 if the cage touches by its nodes"), "Elements of four nodes (1) or ten (2).").example_of("2"),
+    quantity("bearing.cage.youngs_modulus", MODULUS, STEEL_CAGE, "Young's modulus of a flexible cage.").hint(MODULUS_HINT),
+    Key::new("bearing.cage.poisson_ratio", POISSON, STEEL_CAGE, "Poisson's ratio of a flexible cage.").hint(POISSON_HINT),
     quantity("bearing.cage.modes_to", Kind::Quantity(Frequency, above(0.0, 1e6, "Hz")),
         Depends("15 kHz for a reduced cage"),
         "Highest natural frequency of the free cage that is kept. Static correction modes are added.").example_of("15 kHz"),
@@ -123,8 +124,8 @@ pub(crate) const KEYS: &[Key] = &[
         Depends("true for a reduced cage"),
         "True to add static correction modes for both walls of each pocket and for both rails next to it.").example_of("true"),
     quantity("bearing.cage.damping", Kind::Quantity(Rate, closed(0.0, 1e9, "1/s")),
-        Depends("0 1/s for a reduced cage"),
-        "Mass-proportional damping of the deformation of a reduced cage.").hint("the source has 77 and 100 1/s for housings and shafts").example_of("77 1/s"),
+        Depends("0 1/s for a flexible cage"),
+        "Mass-proportional damping of the deformation of a flexible cage.").hint("the source has 77 and 100 1/s for housings and shafts").example_of("77 1/s"),
     Key::new("bearing.cage.friction", FRICTION, Default { value: "0.1", reason: "section 5.3.2" },
         "Friction coefficient of the cage's contacts.").hint(FRICTION_HINT).example_of("0.1"),
     quantity("bearing.cage.regularisation_speed", SLIP,
@@ -250,7 +251,7 @@ const RACE_INERTIA: &str =
 #[rustfmt::skip]
 pub(crate) const TABLES: &[Table] = &[
     table("bearing.cage.contact", "Normal force of the cage's contacts.", "contact = { law = \"penalty\", stiffness = \"2e8 N/m\" }"),
-    table("bearing.cage.mesh", "Mesh of a cage that touches by its nodes, generated in ten-node elements from the cage's dimensions.", "mesh = { quarter = 4, bar = 2, wall = 2 }"),
+    table("bearing.cage.mesh", "Mesh of a cage that touches by its nodes, generated from the cage's dimensions.", "mesh = { quarter = 4, bar = 2, wall = 2 }"),
     table("bearing.cage.inertia", "Moments of inertia of the cage.", "inertia = { axial = \"7e-5 kg m^2\", transverse = \"4e-5 kg m^2\" }"),
     table("inner_race.inertia", "Mass and moments of inertia of the inner race.", RACE_INERTIA),
     table("inner_race.rotating_load", "A rotating radial force.",
