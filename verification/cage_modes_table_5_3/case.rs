@@ -40,7 +40,7 @@ const MASS: f64 = 0.069;
 /// First pairs in and out of the plane of the literal cage, Hz: converged on fine meshes of ten-node
 /// elements by two other finite-element programs. Kept as these two numbers alone: unlike
 /// `calculix_comparison` there are neither decks nor output to run anew.
-const CONVERGED: [f64; 2] = [2271.5, 3959.0];
+pub(crate) const CONVERGED: [f64; 2] = [2271.5, 3959.0];
 const OTHERS: &str = "converged by two other finite-element programs; kept as numbers alone, without decks or output";
 
 /// Meshes from coarse to fine.

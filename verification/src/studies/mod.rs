@@ -1,5 +1,6 @@
 //! Studies of run time against error.
 
+mod cage;
 mod motion;
 mod regimes;
 mod solids;
@@ -7,4 +8,4 @@ mod solids;
 use crate::pareto::Study;
 
 /// Every study.
-pub const STUDIES: &[Study] = &[regimes::DEFAULT, solids::DEFLECTION];
+pub const STUDIES: &[Study] = &[regimes::DEFAULT, solids::DEFLECTION, cage::FLEXIBLE];
