@@ -4,6 +4,7 @@
 //! - [`results`], [`assembly_results`]: results folder of a static solution
 //! - [`session`]: execution of a transient or quasi-static run; [`recorder`]: its time series; [`mod@state`]: its
 //!   restart files; [`table`] and [`summary`]: its evaluation
+//! - [`ensemble`]: statistics of many runs and their spread
 //! - [`fields`]: fields of a solid for ParaView
 //! - [`warnings`]: codes of warnings, and the warnings on solids
 //! - [`pictures`]: plots of a run; [`plots`]: SVG pictures from plain data
@@ -35,6 +36,7 @@ pub mod assembly_results;
 pub mod atomic;
 pub mod compare;
 pub mod defect_lines;
+pub mod ensemble;
 pub mod fields;
 pub mod folder;
 pub mod journal;

@@ -375,7 +375,7 @@ pub(super) fn vector(name: &str, vector: &Vector3<f64>, unit: &str) -> Result<Va
     }))
 }
 
-fn program() -> Value {
+pub(super) fn program() -> Value {
     json!({ "name": "bearing-dynamics", "version": env!("CARGO_PKG_VERSION") })
 }
 

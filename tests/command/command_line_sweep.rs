@@ -425,6 +425,6 @@ fn a_sweep_of_a_scene_with_a_run_says_that_it_is_one_of_statics() {
     let vary = ["--vary", "bearing.ball_phase=0 deg, 5 deg", "--out", &out];
     for (name, has_run) in [("settling.toml", true), ("deep_groove_tilt.toml", false)] {
         let said = done(&[&["sweep", &scene(name), "--fresh"], &vary[..]].concat());
-        assert_eq!(said.contains("its run is not swept"), has_run, "{said}");
+        assert_eq!(said.contains("--of runs sweeps its run"), has_run, "{said}");
     }
 }

@@ -22,7 +22,7 @@ struct Body {
 /// A row of the table: its name, what a yes requires, and the check.
 type Feature = (&'static str, &'static str, fn(&Place) -> Cell);
 
-const FEATURES: [Feature; 15] = [
+const FEATURES: [Feature; 16] = [
     ("check", "the scene is reported as valid", check),
     ("check --json", "the output is one JSON object", check_json),
     ("plan", "stages are listed, and no refusal is announced", plan),
@@ -31,6 +31,7 @@ const FEATURES: [Feature; 15] = [
     ("resume", "half a run, resumed, has the `series.csv` of an unbroken one", resume),
     ("threads", "`run --threads 2` has the `series.csv` of one thread", threads),
     ("sweep", "both of two points are in `sweep.csv`", sweep),
+    ("sweep --of runs", "both of two points are in `series.csv`", sweep_of_runs),
     ("modes", "`series.csv` has frequencies", modes),
     ("pack", "`compare` finds the pack equal to results of `statics`", pack),
     ("compare", "results of two equal runs (of statics where nothing runs) are equal", compare),
@@ -258,6 +259,13 @@ fn sweep(place: &Place) -> Cell {
     let rows = read(&place.path("sweep/sweep.csv"));
     place.yes(rows.lines().count() == 3, &rows)?;
     Ok(said.lines().nth(1).unwrap_or("").to_string())
+}
+
+fn sweep_of_runs(place: &Place) -> Cell {
+    let (scene, out) = (place.out("scene.toml"), place.out("runs"));
+    place.done(&["sweep", &scene, "--vary", place.body.vary, "--of", "runs", "--out", &out])?;
+    let rows = place.series("runs");
+    place.yes(rows.lines().count() == 3, &rows)
 }
 
 fn modes(place: &Place) -> Cell {

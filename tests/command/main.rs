@@ -61,6 +61,7 @@ mod solid_command;
 mod solid_command_errors;
 mod solid_command_numbers;
 mod solid_command_resume;
+mod sweep_of_runs;
 mod sweep_resume;
 mod turning_springs;
 mod warnings;

@@ -6,7 +6,7 @@ mod prepared;
 mod results;
 mod texts;
 
-pub use prepared::{planned_request, request};
+pub use prepared::{check_end, planned_request, request};
 
 use super::earlier::{Writes, claimed, refuse_unfinished_run, remove_earlier};
 use super::{Changes, CommandResult, Outcome, interruption, print, results_folder};
@@ -14,10 +14,10 @@ use bearing_dynamics::motion::bonded_bushing::BondedBushing;
 use bearing_dynamics::motion::explicit_solid::SteppedSolid;
 use bearing_dynamics::output::session::{Motion, Session, SessionError, Status};
 use bearing_dynamics::output::state::{self, StateError, StateFile, StateRecord, Stopped};
-use bearing_dynamics::scene::resolve_subject;
+use bearing_dynamics::scene::{Document, resolve_subject};
 use bearing_dynamics::solids::explicit::ExplicitSolid;
 use indicatif::{ProgressBar, ProgressStyle};
-use prepared::{Prepared, check_end};
+use prepared::Prepared;
 use results::{Seconds, write_fields_file, write_results};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -26,6 +26,8 @@ use std::time::{Duration, Instant};
 
 /// Steps of a bearing between two checks of signals and clock: under a millisecond.
 const STEPS_AT_ONCE: u64 = 50;
+/// Usual wall time between two saved states, s.
+const SAVE_EVERY: u64 = 30;
 /// Elements evaluated between two checks: a few milliseconds.
 const ELEMENTS_AT_ONCE: u64 = 200_000;
 
@@ -48,7 +50,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
     /// Wall time between two saved states, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = whole_seconds,
+    #[arg(long, value_name = "SECONDS", default_value_t = SAVE_EVERY, value_parser = whole_seconds,
           allow_negative_numbers = true)]
     save_every: u64,
 }
@@ -60,10 +62,12 @@ fn whole_seconds(text: &str) -> Result<u64, String> {
     }
 }
 
-enum End {
+/// How a run ended.
+pub enum End {
     Complete,
-    Interrupted,
-    Failed(SessionError),
+    /// With the place it has reached.
+    Interrupted(String),
+    Failed(String),
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
@@ -75,94 +79,56 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let folder = claimed(&folder, Writes::Run { fresh: arguments.fresh })?;
     let kept = kept_state(arguments, &folder)?;
     let prepared = Prepared::new(&document, &subject)?;
-    let (request, choice) = prepared.request()?;
-    let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
-
+    let read = start.elapsed().as_secs_f64();
     let interrupted = interruption(|| {})?;
-
-    let start = Instant::now();
-    let parts = prepared.parts(usize::from(arguments.threads))?;
-    let record = StateRecord {
-        fingerprint: state::fingerprint(&parts, &request),
-        stopped: Stopped::Running,
-        error: None,
-        seconds: kept.as_ref().map_or(0.0, |file| file.seconds),
-    };
-    let mut session = match &kept {
-        Some(file) => match state::resume(&folder, file, parts, &request) {
-            Err(error @ StateError::Scene { .. }) => {
-                let now = prepared.record(&request, None, Vec::new())?;
-                return Err(format!("{error}{}", changed::since(&folder, &now)).into());
-            }
-            other => other?,
-        },
-        None => {
-            if remove_earlier(&folder)? {
-                print(&format!("the earlier results in {} are replaced\n", folder.display()))?;
-            }
-            Session::start(parts, &request)?
-        }
-    };
-    seconds.start = start.elapsed().as_secs_f64();
-    for note in prepared.notes() {
-        print(&format!("note: {note}\n"))?;
-    }
-    let shared = matches!(session.motion, Motion::Solid(_) | Motion::Housed(_));
-    if arguments.threads > 1 && !shared {
-        print(
-            "note: --threads has no effect here: only explicit finite elements run in parallel\n",
-        )?;
-    }
-    print(&texts::announcement(&session, &prepared, &request, choice.as_ref(), kept.as_ref()))?;
-
-    let start = Instant::now();
-    let run = Running {
+    let job = Job {
         prepared: &prepared,
+        read,
         folder: &folder,
-        record: &record,
-        interrupted: &interrupted,
+        kept,
+        threads: usize::from(arguments.threads),
         save_every: Duration::from_secs(arguments.save_every),
+        interrupted: &interrupted,
+        is_silent: false,
     };
-    if kept.is_none() && session.clock.fields_due() == Some(0) {
-        write_fields_file(&folder, &prepared, &mut session, 0)?;
-    }
-    let end = run.simulate(&mut session)?;
-    seconds.simulate = record.seconds + start.elapsed().as_secs_f64();
-    let (stopped, stopped_by) = match &end {
-        End::Complete => (Stopped::Complete, None),
-        End::Interrupted => (Stopped::Interrupted, Some("interrupted".to_string())),
-        End::Failed(error) => (Stopped::Failed, Some(error.to_string())),
-    };
-    let error = stopped_by.clone().filter(|_| stopped == Stopped::Failed);
-    // Saved first, so that an error in plots or tables does not lose the run.
-    let last = StateRecord { stopped, error, seconds: seconds.simulate, ..record };
-    state::save(&folder, &mut session, &last)?;
-    write_results(&folder, &prepared, &mut session, (&request, choice), stopped_by, &seconds)?;
-    outcome(arguments, &folder, &session, end)
-}
-
-fn outcome(arguments: &Arguments, folder: &Path, session: &Session, end: End) -> CommandResult {
-    let (out, scene) = (folder.display(), arguments.scene.display());
-    match end {
+    match job.run()? {
         End::Complete => Ok(Outcome::Done),
-        End::Interrupted => Err(format!(
-            "interrupted at {}; the results so far are in {out}. To resume: bearing run {scene} \
+        End::Interrupted(place) => Err(format!(
+            "interrupted at {place}; the results so far are in {out}. To resume: bearing run {} \
              --out {out}{} --resume",
-            texts::place(session),
-            arguments.changes.again()
+            arguments.scene.display(),
+            arguments.changes.again(),
+            out = folder.display(),
         )
         .into()),
-        End::Failed(error) => {
-            let kept = match session.motion {
-                Motion::Bearing(_) => "before that step",
-                Motion::Solid(_)
-                | Motion::Housed(_)
-                | Motion::QuasiStaticSequence(_)
-                | Motion::Rubber(_) => "at the last row",
-            };
-            Err(format!("{error}; the rows so far and the state {kept} are in {out}").into())
-        }
+        End::Failed(error) => Err(error.into()),
     }
+}
+
+/// A run into a claimed folder that prints nothing, on one thread; it resumes if the folder has a saved state.
+///
+/// # Errors
+/// What keeps the run from starting, and files that cannot be written.
+pub fn run_silently(
+    document: &Document,
+    folder: &Path,
+    interrupted: &AtomicBool,
+) -> Result<End, Box<dyn Error>> {
+    let start = Instant::now();
+    let subject = resolve_subject(document)?;
+    check_end(Path::new(document.name()), &subject)?;
+    let prepared = Prepared::new(document, &subject)?;
+    let job = Job {
+        prepared: &prepared,
+        read: start.elapsed().as_secs_f64(),
+        folder,
+        kept: state::read(folder)?,
+        threads: 1,
+        save_every: Duration::from_secs(SAVE_EVERY),
+        interrupted,
+        is_silent: true,
+    };
+    job.run()
 }
 
 /// The saved state, with `--resume`.
@@ -184,36 +150,134 @@ fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>,
     Ok(None)
 }
 
-struct Running<'r> {
-    prepared: &'r Prepared<'r>,
-    folder: &'r Path,
-    record: &'r StateRecord,
-    interrupted: &'r AtomicBool,
+/// A run into a claimed folder.
+struct Job<'j> {
+    prepared: &'j Prepared<'j>,
+    /// Wall time of its preparation, s.
+    read: f64,
+    folder: &'j Path,
+    /// The state it resumes from.
+    kept: Option<StateFile>,
+    threads: usize,
+    /// Wall time between two saved states.
     save_every: Duration,
+    interrupted: &'j AtomicBool,
+    /// Prints nothing and shows no progress, as one of many runs.
+    is_silent: bool,
 }
 
-impl Running<'_> {
+impl Job<'_> {
+    /// Runs to the end, a signal or an error of the run itself, and writes the results.
+    ///
+    /// # Errors
+    /// What keeps the run from starting, and files that cannot be written.
+    fn run(&self) -> Result<End, Box<dyn Error>> {
+        let Job { prepared, folder, .. } = *self;
+        let kept = self.kept.as_ref();
+        let (request, choice) = prepared.request()?;
+        let mut seconds = Seconds { read: self.read, ..Seconds::default() };
+        let start = Instant::now();
+        let parts = prepared.parts(self.threads)?;
+        let record = StateRecord {
+            fingerprint: state::fingerprint(&parts, &request),
+            stopped: Stopped::Running,
+            error: None,
+            seconds: kept.map_or(0.0, |file| file.seconds),
+        };
+        let mut session = match kept {
+            Some(file) => match state::resume(folder, file, parts, &request) {
+                Err(error @ StateError::Scene { .. }) => {
+                    let now = prepared.record(&request, None, Vec::new())?;
+                    return Err(format!("{error}{}", changed::since(folder, &now)).into());
+                }
+                other => other?,
+            },
+            None => {
+                if remove_earlier(folder)? {
+                    let folder = folder.display();
+                    self.print(&format!("the earlier results in {folder} are replaced\n"))?;
+                }
+                Session::start(parts, &request)?
+            }
+        };
+        seconds.start = start.elapsed().as_secs_f64();
+        for note in prepared.notes() {
+            self.print(&format!("note: {note}\n"))?;
+        }
+        let shared = matches!(session.motion, Motion::Solid(_) | Motion::Housed(_));
+        if self.threads > 1 && !shared {
+            self.print(
+                "note: --threads has no effect here: only explicit finite elements run in parallel\n",
+            )?;
+        }
+        self.print(&texts::announcement(&session, prepared, &request, choice.as_ref(), kept))?;
+
+        let start = Instant::now();
+        if kept.is_none() && session.clock.fields_due() == Some(0) {
+            write_fields_file(folder, prepared, &mut session, 0)?;
+        }
+        let stop = self.simulate(&record, &mut session)?;
+        seconds.simulate = record.seconds + start.elapsed().as_secs_f64();
+        let (stopped, stopped_by) = match &stop {
+            Stop::Complete => (Stopped::Complete, None),
+            Stop::Interrupted => (Stopped::Interrupted, Some("interrupted".to_string())),
+            Stop::Failed(error) => (Stopped::Failed, Some(error.to_string())),
+        };
+        let error = stopped_by.clone().filter(|_| stopped == Stopped::Failed);
+        // Saved first, so that an error in plots or tables does not lose the run.
+        let last = StateRecord { stopped, error, seconds: seconds.simulate, ..record };
+        state::save(folder, &mut session, &last)?;
+        let request = (&request, choice);
+        let text = write_results(folder, prepared, &mut session, request, stopped_by, &seconds)?;
+        self.print(&text)?;
+        Ok(match stop {
+            Stop::Complete => End::Complete,
+            Stop::Interrupted => End::Interrupted(texts::place(&session)),
+            Stop::Failed(error) => {
+                let kept = match session.motion {
+                    Motion::Bearing(_) => "before that step",
+                    Motion::Solid(_)
+                    | Motion::Housed(_)
+                    | Motion::QuasiStaticSequence(_)
+                    | Motion::Rubber(_) => "at the last row",
+                };
+                let folder = folder.display();
+                End::Failed(format!(
+                    "{error}; the rows so far and the state {kept} are in {folder}"
+                ))
+            }
+        })
+    }
+
+    fn print(&self, text: &str) -> Result<(), Box<dyn Error>> {
+        if self.is_silent { Ok(()) } else { print(text) }
+    }
+
     /// Steps until the end, a signal or an error; saves the state at intervals.
-    fn simulate(&self, session: &mut Session) -> Result<End, Box<dyn Error>> {
-        let bar = progress_bar(session);
+    fn simulate(
+        &self,
+        record: &StateRecord,
+        session: &mut Session,
+    ) -> Result<Stop, Box<dyn Error>> {
+        let bar = if self.is_silent { ProgressBar::hidden() } else { progress_bar(session) };
         let start = Instant::now();
         let mut saved = start;
         let at_once = at_once(session);
-        let end = loop {
+        let stop = loop {
             match session.advance(at_once) {
-                Ok(Status::Complete) => break End::Complete,
+                Ok(Status::Complete) => break Stop::Complete,
                 Ok(Status::Running) => {}
                 Ok(Status::Fields(index)) => {
                     write_fields_file(self.folder, self.prepared, session, index)?;
                 }
-                Err(error) => break End::Failed(error),
+                Err(error) => break Stop::Failed(error),
             }
             if self.interrupted.load(Ordering::Relaxed) {
-                break End::Interrupted;
+                break Stop::Interrupted;
             }
             if saved.elapsed() >= self.save_every {
-                let seconds = self.record.seconds + start.elapsed().as_secs_f64();
-                state::save(self.folder, session, &StateRecord { seconds, ..self.record.clone() })?;
+                let seconds = record.seconds + start.elapsed().as_secs_f64();
+                state::save(self.folder, session, &StateRecord { seconds, ..record.clone() })?;
                 saved = Instant::now();
             }
             if !bar.is_hidden() {
@@ -222,8 +286,14 @@ impl Running<'_> {
             }
         };
         bar.finish_and_clear();
-        Ok(end)
+        Ok(stop)
     }
+}
+
+enum Stop {
+    Complete,
+    Interrupted,
+    Failed(SessionError),
 }
 
 /// Steps, coupling steps or equilibria between two checks of signals and clock.

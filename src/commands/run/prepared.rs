@@ -90,7 +90,7 @@ pub(super) struct Fields {
 }
 
 /// Returns an error if the scene has no end time.
-pub(super) fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
+pub fn check_end(path: &Path, subject: &Subject) -> Fallible<()> {
     let (ends, bearing_alone) = match subject {
         Subject::Assembly(scene) => (scene.run().is_some(), scene.housing_method().is_none()),
         Subject::Solid(scene) => (scene.run.is_some(), false),

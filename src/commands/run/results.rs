@@ -4,7 +4,6 @@ use super::figures::key_figures;
 use super::prepared::{Fields, Prepared, SolidOf, SolutionMethod};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
-use crate::commands::print;
 use crate::commands::warnings::{aliased, of_run};
 use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
@@ -60,7 +59,7 @@ struct Extras {
     files: usize,
 }
 
-/// Writes and prints all results; the state has been saved before.
+/// Writes all results, and returns what to print; the state has been saved before.
 pub(super) fn write_results(
     folder: &Path,
     prepared: &Prepared,
@@ -68,7 +67,7 @@ pub(super) fn write_results(
     (request, choice): (&RunRequest, Option<Choice>),
     stopped_by: Option<String>,
     seconds: &Seconds,
-) -> Fallible<()> {
+) -> Fallible<String> {
     let start = Instant::now();
     let mut extras = Extras::default();
     let table = RunTable::new(session, prepared.window_start())?;
@@ -126,16 +125,15 @@ pub(super) fn write_results(
         },
     };
     let written = write_run_results(folder, session, &table, &spectra, &report)?;
-    print(&key_figures(session, &table, seconds.simulate))?;
-    print(&lines(&extras.warnings))?;
+    let mut text = key_figures(session, &table, seconds.simulate) + &lines(&extras.warnings);
     for line in &extras.lines {
-        print(&format!("{line}\n"))?;
+        text += &format!("{line}\n");
     }
     // One more for the state.
     let fields = std::fs::read_dir(folder.join(FOLDER)).map_or(0, |files| files.count() + 1);
     let files = written.len() + plots.len() + fields + extras.files + 1;
-    print(&format!("wrote {files} files to {}\n", folder.display()))?;
-    Ok(())
+    text += &format!("wrote {files} files to {}\n", folder.display());
+    Ok(text)
 }
 
 /// Writes the fields of the last row, if they were not due there.

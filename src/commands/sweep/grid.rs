@@ -90,14 +90,20 @@ impl Grid {
         indices
     }
 
-    /// The scene of a point.
-    pub fn scene(&self, document: &Document, point: usize) -> Result<AssemblyScene, SceneError> {
+    /// The document of a point.
+    pub fn document(&self, document: &Document, point: usize) -> Result<Document, SceneError> {
         let mut document = document.clone();
         for (axis, index) in self.axes.iter().zip(self.indices(point)) {
             if let Some(value) = axis.value(index) {
                 document.set(&axis.key, &value)?;
             }
         }
+        Ok(document)
+    }
+
+    /// The scene of a point.
+    pub fn scene(&self, document: &Document, point: usize) -> Result<AssemblyScene, SceneError> {
+        let document = self.document(document, point)?;
         match resolve_subject(&document)? {
             Subject::Assembly(scene) => Ok(*scene),
             // Refused, with the reason.
@@ -105,18 +111,22 @@ impl Grid {
         }
     }
 
-    /// Refuses a sweep none of whose points describes a bearing, with what is wrong at the first.
-    /// Looks at up to `LOOKS` points, evenly spread over the grid.
+    /// Refuses a sweep of statics none of whose points describes a bearing, with what is wrong at the first.
     pub fn check(&self, document: &Document) -> Result<(), Box<dyn Error>> {
-        const LOOKS: usize = 1000;
-        let problem = |point| -> Result<(), Box<dyn Error>> {
-            still(&Lists::of(&self.scene(document, point)?)).map(|_| ())
-        };
         if self.axes.iter().any(|axis| axis.key == "housing.method") {
             let text = "housing.method: statics of a flexible housing is one for all methods, and a \
                         rigid one has another table; sweep the two by themselves";
             return Err(text.into());
         }
+        self.check_any(|point| still(&Lists::of(&self.scene(document, point)?)).map(|_| ()))
+    }
+
+    /// The error of the first point if all have one. Looks at up to `LOOKS` points, evenly spread over the grid.
+    pub fn check_any(
+        &self,
+        problem: impl Fn(usize) -> Result<(), Box<dyn Error>>,
+    ) -> Result<(), Box<dyn Error>> {
+        const LOOKS: usize = 1000;
         let Err(first) = problem(0) else { return Ok(()) };
         let mut others = (0..self.len()).step_by(self.len().div_ceil(LOOKS)).skip(1);
         if others.any(|point| problem(point).is_ok()) { Ok(()) } else { Err(first) }

@@ -9,6 +9,7 @@ use bearing_dynamics::output::fields::stresses;
 use bearing_dynamics::output::recorder::seat::{SeatRow, prefix};
 use bearing_dynamics::output::warnings::Warning;
 use bearing_dynamics::output::warnings::solid::of_equilibrium;
+use bearing_dynamics::scene::SolidScene;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::bore_shape::BorePlace;
 use bearing_dynamics::scene::build::housing::setup;
@@ -118,9 +119,16 @@ pub type MeshFiles = Vec<(String, Vec<u8>)>;
 
 /// The mesh files that a scene's housings are read from.
 pub fn mesh_files(scene: &AssemblyScene) -> Result<MeshFiles, Box<dyn Error>> {
+    let housings = scene.bearings.iter().filter_map(|placed| placed.housing.as_ref());
+    solid_mesh_files(housings.map(|housing| &housing.solid))
+}
+
+pub fn solid_mesh_files<'s>(
+    solids: impl Iterator<Item = &'s SolidScene>,
+) -> Result<MeshFiles, Box<dyn Error>> {
     let mut all = MeshFiles::new();
-    for housing in scene.bearings.iter().filter_map(|placed| placed.housing.as_ref()) {
-        let MeshSource::File { path, name, .. } = &housing.solid.mesh.source else { continue };
+    for solid in solids {
+        let MeshSource::File { path, name, .. } = &solid.mesh.source else { continue };
         if all.iter().any(|(known, _)| known == name) {
             continue;
         }

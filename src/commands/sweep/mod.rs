@@ -1,12 +1,13 @@
-//! `bearing sweep SCENE --vary key=values`: one equilibrium for each point of a grid, one table for all.
+//! `bearing sweep SCENE --vary key=values`: one equilibrium or run for each point of a grid, one table for all.
 //!
-//! Points are solved in blocks of fixed size. Inside a block each search starts from the solution of the point before, and blocks share
+//! Equilibria are solved in blocks of fixed size. Inside a block each search starts from the solution of the point before, and blocks share
 //! nothing. Neither the number of threads nor an interruption changes a bit of the table.
 
 mod grid;
 pub(super) mod housings;
 mod point;
 mod report;
+mod runs;
 mod table;
 
 use super::earlier::{Writes, claimed};
@@ -39,18 +40,27 @@ pub struct Arguments {
     /// Without it the scene's [sweep] table counts
     #[arg(long = "vary", value_name = "KEY=VALUES")]
     vary: Vec<String>,
+    /// What to compute at each point: equilibria, or runs in folders of their own [default: sweep.of of the scene]
+    #[arg(long, value_enum)]
+    of: Option<Of>,
     /// Results folder [default: results/<name of the scene>-sweep]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Number of threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Start every point cold instead of from its neighbour
+    /// Of statics: start every point cold instead of from its neighbour
     #[arg(long)]
     cold: bool,
     /// Discard an unfinished sweep in the results folder
     #[arg(long)]
     fresh: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Of {
+    Statics,
+    Runs,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
@@ -62,6 +72,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         if let Some(note) = reach(&document, "--vary", &axis.key, &axis.key)? {
             print(&format!("note: {note}\n"))?;
         }
+    }
+    let by_scene = if document.sweeps_runs() { Of::Runs } else { Of::Statics };
+    if arguments.of.unwrap_or(by_scene) == Of::Runs {
+        return runs::run(arguments, &document, &grid, &interrupted);
     }
     // A scene that cannot be solved at all is said before anything is written.
     grid.check(&document)?;
@@ -122,7 +136,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         folder.join("sweep.csv").display()
     ))?;
     if first.is_ok_and(|first| first.run().is_some()) {
-        print("the statics of this scene at each point, at t = 0; its run is not swept\n")?;
+        print("the statics of this scene at each point, at t = 0; --of runs sweeps its run\n")?;
     }
     for warned in report::warnings(&table) {
         let (name, title, points) = (warned.entry.name, warned.entry.title, warned.points);

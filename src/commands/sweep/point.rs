@@ -108,10 +108,7 @@ const RESULTS: [(&str, &str); 17] = [
 
 /// Header of the table: point, varied keys, positions and results.
 pub fn columns(grid: &Grid, scene: Option<&AssemblyScene>) -> Vec<Column> {
-    let mut columns = vec![Column::new("point", "1")];
-    for axis in &grid.axes {
-        columns.push(Column::new(axis.key.clone(), super::report::unit_of(axis)));
-    }
+    let mut columns = start_of_columns(grid);
     match scene.filter(|scene| scene.one_still().is_none()) {
         Some(scene) => columns.extend(assembly_columns(scene)),
         None => {
@@ -124,6 +121,13 @@ pub fn columns(grid: &Grid, scene: Option<&AssemblyScene>) -> Vec<Column> {
     columns.extend(scene.map_or_else(Vec::new, housings::columns));
     columns.push(Column::new("warnings", "1"));
     columns
+}
+
+/// Point and varied keys.
+pub fn start_of_columns(grid: &Grid) -> Vec<Column> {
+    let keys = grid.axes.iter();
+    let keys = keys.map(|axis| Column::new(axis.key.clone(), super::report::unit_of(axis)));
+    std::iter::once(Column::new("point", "1")).chain(keys).collect()
 }
 
 /// Of each body that loads may move position and what holds it, of each bearing how its balls are loaded.
@@ -165,7 +169,7 @@ fn of_assembly(still: &StaticAssembly, solution: &AssemblySolution) -> Vec<f64> 
     row
 }
 
-fn start_of_row(grid: &Grid, point: usize) -> Vec<f64> {
+pub fn start_of_row(grid: &Grid, point: usize) -> Vec<f64> {
     let varied = grid.axes.iter().zip(grid.indices(point));
     let varied = varied.map(|(axis, index)| super::report::number_of(axis, index));
     std::iter::once(point as f64).chain(varied).collect()

@@ -90,8 +90,14 @@ fn values(grid: &Grid, point: usize) -> Vec<String> {
         .collect()
 }
 
+/// Points that failed, with their messages.
+pub fn failures(grid: &Grid, failures: &BTreeMap<usize, String>) -> Value {
+    let entry = |(&point, message): (&usize, &String)| json!({ "point": point, "at": values(grid, point), "message": message });
+    failures.iter().map(entry).collect()
+}
+
 /// `sweep.json` of a sweep without a point yet.
-pub fn started(document: &Document, grid: &Grid, hash: &str) -> Value {
+pub fn started(document: &Document, grid: &Grid, (of, hash): (&str, &str)) -> Value {
     let axes = grid.axes.iter().map(|axis| {
         let mut entry = json!({ "key": axis.key, "count": axis.len(), "unit": unit_of(axis) });
         if unit_of(axis) == "choice" {
@@ -104,6 +110,7 @@ pub fn started(document: &Document, grid: &Grid, hash: &str) -> Value {
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scene": document.name(),
+        "of": of,
         "hash": hash,
         "axes": axes.collect::<Vec<_>>(),
         "points": grid.len(),
@@ -125,18 +132,15 @@ pub fn write(
     let series = table.series()?;
     series.write_csv(&folder.join("sweep.csv"))?;
     series.write_npy(&folder.join("sweep.npy"))?;
-    let failures = table.failures.iter().map(|(&point, message)| {
-        json!({ "point": point, "at": values(grid, point), "message": message })
-    });
     let warnings = warnings(table).into_iter().map(|PointsWarned { entry, point, points }| {
         json!({
             "code": entry.name, "text": entry.title, "point": point, "at": values(grid, point), "points": points
         })
     });
-    let mut record = started(document, grid, hash);
+    let mut record = started(document, grid, ("statics", hash));
     record["solved"] = json!(table.rows.len());
     record["complete"] = json!(table.done() == grid.len());
-    record["failures"] = failures.collect();
+    record["failures"] = failures(grid, &table.failures);
     record["warnings"] = warnings.collect();
     record["threads"] = json!(threads);
     record["seconds"] = json!(seconds);

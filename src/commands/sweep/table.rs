@@ -8,6 +8,7 @@ use bearing_dynamics::output::series::SeriesError;
 use bearing_dynamics::output::{Column, Series, json, write_atomic};
 use bearing_dynamics::scene::Document;
 use ndarray::Array2;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fs::{File, OpenOptions};
@@ -34,25 +35,16 @@ impl Table {
         fresh: bool,
     ) -> Result<Table, Box<dyn Error>> {
         let path = folder.join("sweep.csv");
-        let record = folder.join("sweep.json");
-        let earlier = if record.exists() { Some(json::read(&record)?) } else { None };
-        let unfinished = earlier.filter(|earlier| earlier["complete"] == false && !fresh);
+        let earlier = earlier(folder, ("statics", hash), fresh)?;
+        let unfinished = earlier.filter(|earlier| earlier["complete"] == false);
         let rows = match &unfinished {
-            Some(earlier) if earlier["hash"] == hash => kept_rows(&path, &columns, grid.len())?,
-            Some(_) => {
-                return Err(format!(
-                    "{} belongs to an unfinished sweep of another scene or of other values; finish that one, \
-                     choose another --out, or discard it with --fresh",
-                    record.display()
-                )
-                .into());
-            }
+            Some(_) => kept_rows(&path, &columns, grid.len())?,
             None => BTreeMap::new(),
         };
         // The old table goes before the new record is there, so that no row is taken for one of another sweep.
         report::remove_tables(folder, unfinished.is_none())?;
         if unfinished.is_none() {
-            report::write_record(folder, &report::started(document, grid, hash))?;
+            report::write_record(folder, &report::started(document, grid, ("statics", hash)))?;
         }
         write_atomic(&path, series(&columns, rows.values())?.to_csv()?.as_bytes())?;
         let file = OpenOptions::new().append(true).open(&path);
@@ -89,6 +81,37 @@ impl Table {
     pub fn series(&self) -> Result<Series, SeriesError> {
         series(&self.columns, self.rows.values())
     }
+}
+
+/// Record of an earlier sweep with this hash in the folder; `None` if there is none, or it is discarded.
+///
+/// # Errors
+/// A sweep of the other kind, or an unfinished one with another hash.
+pub fn earlier(
+    folder: &Path,
+    (of, hash): (&str, &str),
+    fresh: bool,
+) -> Result<Option<Value>, Box<dyn Error>> {
+    let path = folder.join("sweep.json");
+    if !path.exists() {
+        return Ok(None);
+    }
+    let found = json::read(&path)?;
+    let kind = found["of"].as_str().unwrap_or("statics");
+    if kind != of {
+        let folder = folder.display();
+        let message = format!("{folder} holds a sweep of {kind}; name another folder with --out");
+        return Err(message.into());
+    }
+    if found["hash"] == hash || fresh || found["complete"] == true {
+        return Ok(Some(found).filter(|found| found["hash"] == hash && !fresh));
+    }
+    Err(format!(
+        "{} belongs to an unfinished sweep of another scene or of other values; finish that one, \
+         choose another --out, or discard it with --fresh",
+        path.display()
+    )
+    .into())
 }
 
 fn series<'a>(

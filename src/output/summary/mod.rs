@@ -282,13 +282,15 @@ fn final_values(table: &RunTable) -> Result<Value, ResultsError> {
     Ok(Value::Object(values))
 }
 
-/// Mean, extremes and peak-to-peak amplitude of every channel over the window.
+/// Mean, RMS about the mean, extremes and peak-to-peak amplitude of every channel over the window.
 fn window(table: &RunTable) -> Result<Value, ResultsError> {
     let rows = table.window.clone();
     let mut channels = Map::new();
     for column in &table.series.columns()[1..] {
         let values = table.windowed(&column.name).unwrap_or_default();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        let rms = (square / values.len() as f64).sqrt();
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let entry = |value: f64| quantity(&column.name, value, &column.unit);
@@ -296,6 +298,7 @@ fn window(table: &RunTable) -> Result<Value, ResultsError> {
             column.name.clone(),
             json!({
                 "mean": entry(mean)?,
+                "rms": entry(rms)?,
                 "smallest": entry(low)?,
                 "largest": entry(high)?,
                 "peak_to_peak": entry(high - low)?,

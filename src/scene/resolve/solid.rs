@@ -212,7 +212,7 @@ fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
 
 /// Refuses keys of runs, plots and sweeps without effect on a solid.
 fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
-    const SHARED: [&str; 10] = [
+    const SHARED: [&str; 11] = [
         "base",
         "without",
         "title",
@@ -223,6 +223,7 @@ fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
         "numerics.output_interval",
         "numerics.energy_limit",
         "output.plots",
+        "sweep.of",
     ];
     const OWN: [&str; 4] = ["solid.", "modes.", "numerics.method", "numerics.fields_interval"];
     let reason = "a solid does not use it";
@@ -240,8 +241,9 @@ fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
         let reason = "one of these plots is a bearing's";
         return Err(document.refused("output.plots", reason, advice));
     }
-    if !document.sweep().is_empty() {
-        return Err(document.refused("sweep", reason, "leave out [sweep]"));
+    if !document.sweep().is_empty() && !document.sweeps_runs() {
+        let advice = "leave out [sweep], or sweep its runs (of = \"runs\")";
+        return Err(document.refused("sweep", reason, advice));
     }
     Ok(())
 }

@@ -239,6 +239,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("output.plots", Kind::Choices(PLOTS),
         Depends("statics: `load-zone`, `polar`; run: `orbit`, `series`, `polar`; solid: `series`, `spectrum`"),
         "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt`, in a housing `load-zone` only. A run draws `polar` and the others; a quasi-static sequence has no `polar`, `slip-spin` and `run-up`. `run-up` shows the radial displacement of each part with changing speed over that speed."),
+    Key::new("sweep.of", Kind::Choice(&["statics", "runs"]), Default { value: "statics", reason: "the loads at t = 0" },
+        "Results at each point: the equilibrium, or a run in a folder of its own."),
 ];
 
 const MATERIAL_EXAMPLE: &str =
@@ -274,6 +276,6 @@ pub(crate) const TABLES: &[Table] = &[
     table("outer_race", "Position of the outer race (default: fixed and centred), or its loads and prescribed displacements if it moves.", "[outer_race]\nx = \"0 um\""),
     table("ball_forces", "Body forces on the balls.", "[ball_forces]\ncentrifugal = true"),
     table("output", "Optional output.", "[output]\nplots = [\"polar\"]"),
-    table("sweep", "Keys that `bearing sweep` varies if the command line names none: dotted key = list or range.",
+    table("sweep", "Keys that `bearing sweep` varies if the command line names none: dotted key = list or range; and what it computes.",
         "[sweep]\n\"bearing.ball_phase\" = \"0 deg .. 45 deg / 91\""),
 ];

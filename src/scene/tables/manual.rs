@@ -329,4 +329,5 @@ above 10 nm and 1 % of an interference a note states the effect. Coordinates rou
 Values are a list, `[\"5 um\", \"0 um\"]` or `\"5 um, 0 um\"`, or a range `\"low .. high / count\"` that includes both ends. Varying a
 key replaces keys that it excludes: varying `bearing.clearance.radial` replaces a diametral clearance.
 Texts, lists and `ball_forces.gravity` cannot be varied. A varied profile becomes a constant.
+With `of = \"runs\"`, or `bearing sweep --of runs`, each point is a run ([ensembles](guide/run.md#ensembles)).
 ";

@@ -75,7 +75,11 @@ fn table_schema(path: &str) -> Map<String, Value> {
             }
             None => match full.as_str() {
                 "assumptions" => free_table(&full, json!({ "type": "string" })),
-                "sweep" => free_table(&full, sweep_schema()),
+                "sweep" => {
+                    let mut schema = table_schema(&full);
+                    schema.insert("additionalProperties".into(), sweep_schema());
+                    Value::Object(schema)
+                }
                 _ if keys::find_table(&full).is_some_and(|table| table.list) => {
                     json!({ "type": "array", "items": table_schema(&full) })
                 }

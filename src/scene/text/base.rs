@@ -105,6 +105,9 @@ impl Document {
         base.assumptions.extend(self.assumptions);
         if self.layer.tables.iter().any(|(table, _)| *table == "sweep") {
             base.sweep = self.sweep;
+            if let Some((row, _)) = keys::find("sweep.of") {
+                base.layer.given[row] = self.layer.given[row].clone();
+            }
         }
         base.refuse_without_effect(&self.layer)?;
         Ok(base)

@@ -233,10 +233,14 @@ impl Document {
         Ok(())
     }
 
-    /// Reads `[sweep]`. Its keys are dotted paths, quoted or not: in TOML, `a.b = ...` is a nested table.
+    /// Reads `[sweep]`. Its other keys are dotted paths, quoted or not: in TOML, `a.b = ...` is a nested table.
     fn fill_sweep(&mut self, prefix: &str, entries: Vec<Entry>) -> Result<(), SceneError> {
         for Entry { name, offset, node } in entries {
             let path = if prefix.is_empty() { name } else { format!("{prefix}.{name}") };
+            if let Some((row, key)) = keys::find(&format!("sweep.{path}")) {
+                self.layer.given[row] = Some(self.checked(key, &node)?);
+                continue;
+            }
             if let Value::Table(inner) = node.value {
                 self.fill_sweep(&path, inner)?;
                 continue;
@@ -370,6 +374,11 @@ impl Document {
     /// The `[sweep]` table, in the order of the file.
     pub fn sweep(&self) -> &[SweepAxis] {
         &self.sweep
+    }
+
+    /// True if `[sweep]` is of runs instead of statics.
+    pub fn sweeps_runs(&self) -> bool {
+        matches!(self.value("sweep.of"), Some(Checked::Choice("runs")))
     }
 
     pub fn is_given(&self, path: &str) -> bool {

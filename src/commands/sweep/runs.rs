@@ -1,0 +1,170 @@
+//! A sweep of runs: each point a run in a folder of its own, one table of their statistics.
+//!
+//! A point is what `bearing run` makes of its scene, on one thread. An interrupted sweep resumes its unfinished points from their
+//! saved states and skips those whose summary is complete.
+
+use super::grid::Grid;
+use super::housings::{mesh_files, solid_mesh_files};
+use super::{Arguments, point, progress_bar, report, sweep_folder, table};
+use crate::commands::earlier::{Writes, claimed, remove_earlier};
+use crate::commands::run::{End, check_end, run_silently};
+use crate::commands::{CommandResult, Outcome, print};
+use bearing_dynamics::output::ensemble::{self, Channel};
+use bearing_dynamics::output::folder::claim;
+use bearing_dynamics::output::{fields, json};
+use bearing_dynamics::scene::{Document, Subject, resolve_subject};
+use rayon::prelude::*;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// A point after its run: statistics of its channels, or its error.
+type Ran = Result<Vec<Channel>, String>;
+
+pub fn run(
+    arguments: &Arguments,
+    document: &Document,
+    grid: &Grid,
+    interrupted: &AtomicBool,
+) -> CommandResult {
+    let start = Instant::now();
+    if arguments.cold {
+        return Err("--cold applies to statics; each run starts by itself".into());
+    }
+    let subject = |point| -> Result<Subject, Box<dyn Error>> {
+        let document = grid.document(document, point)?;
+        let subject = resolve_subject(&document)?;
+        check_end(Path::new(document.name()), &subject)?;
+        Ok(subject)
+    };
+    grid.check_any(|point| subject(point).map(|_| ()))?;
+    let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;
+    let meshes = match subject(0) {
+        Ok(Subject::Assembly(scene)) => mesh_files(&scene)?,
+        Ok(Subject::Solid(scene)) => solid_mesh_files(std::iter::once(&*scene))?,
+        Err(_) => Vec::new(),
+    };
+    let mesh: Vec<u8> = meshes.into_iter().flat_map(|(_, content)| content).collect();
+    let hash = grid.hash(document, &mesh, false);
+    let of = ("runs", hash.as_str());
+    if table::earlier(&folder, of, arguments.fresh)?.is_none() && remove_points(&folder)? {
+        print(&format!("the earlier results in {} are replaced\n", folder.display()))?;
+    }
+    report::write_record(&folder, &report::started(document, grid, of))?;
+
+    let progress = progress_bar(grid, 0);
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let ran: BTreeMap<usize, Ran> = pool.install(|| {
+        // One after the other, as threads become free.
+        let points = (0..grid.len()).into_par_iter().with_max_len(1);
+        let ran = points.filter_map(|point| {
+            let ran = run_point(document, grid, (point, &folder), interrupted);
+            progress.inc(1);
+            Some((point, ran.map_err(|error| error.to_string()).transpose()?))
+        });
+        ran.collect()
+    });
+    progress.finish_and_clear();
+
+    let mut failures = BTreeMap::new();
+    let mut runs: Vec<ensemble::Run> = Vec::new();
+    for (point, ran) in ran {
+        match ran.and_then(|channels| alike(channels, runs.first())) {
+            Ok(channels) => {
+                runs.push(ensemble::Run { start: point::start_of_row(grid, point), channels });
+            }
+            Err(message) => drop(failures.insert(point, message)),
+        }
+    }
+    let done = runs.len() + failures.len();
+    ensemble::write(&folder, &point::start_of_columns(grid), &runs)?;
+    let mut record = report::started(document, grid, of);
+    record["complete"] = json!(done == grid.len());
+    record["failures"] = report::failures(grid, &failures);
+    report::write_record(&folder, &record)?;
+    if done < grid.len() {
+        return Err(format!(
+            "interrupted after {done} of {} points, kept in {}; the same command resumes",
+            grid.len(),
+            folder.display()
+        )
+        .into());
+    }
+    let (threads, seconds) = (pool.current_num_threads(), start.elapsed().as_secs_f64());
+    print(&format!(
+        "{} runs in {seconds:.2} s on {threads} thread{}: {}\n",
+        runs.len(),
+        if threads == 1 { "" } else { "s" },
+        folder.join("series.csv").display()
+    ))?;
+    match failures.iter().next() {
+        None => Ok(Outcome::Done),
+        Some((point, message)) => Err(format!(
+            "{} of {} runs failed (listed in {}), the first is point {point}: {message}",
+            failures.len(),
+            grid.len(),
+            folder.join("sweep.json").display()
+        )
+        .into()),
+    }
+}
+
+fn point_folder(folder: &Path, point: usize) -> PathBuf {
+    folder.join(format!("point-{point}"))
+}
+
+/// Runs a point, or reads its summary if it is complete; `None` if it was interrupted.
+fn run_point(
+    document: &Document,
+    grid: &Grid,
+    (point, folder): (usize, &Path),
+    interrupted: &AtomicBool,
+) -> Result<Option<Vec<Channel>>, Box<dyn Error>> {
+    let path = point_folder(folder, point).join("summary.json");
+    let is_complete = || json::read(&path).is_ok_and(|summary| summary["complete"] == true);
+    if !is_complete() {
+        if interrupted.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let folder = claim(&point_folder(folder, point))?;
+        match run_silently(&grid.document(document, point)?, &folder, interrupted)? {
+            End::Complete => {}
+            End::Interrupted(_) => return Ok(None),
+            End::Failed(error) => return Err(error.into()),
+        }
+    }
+    let channels = ensemble::channels(&json::read(&path)?);
+    Ok(Some(channels.ok_or("the run ends before its window, output.window_start")?))
+}
+
+/// The channels of a run, which must be those of the first run.
+fn alike(channels: Vec<Channel>, first: Option<&ensemble::Run>) -> Ran {
+    let names = |of: &[Channel]| of.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
+    match first {
+        Some(first) if names(&first.channels) != names(&channels) => {
+            Err("its channels are not those of the first run; sweep it by itself".into())
+        }
+        _ => Ok(channels),
+    }
+}
+
+/// Removes the runs of an earlier sweep, and returns whether it was written to its end; other files are kept.
+fn remove_points(folder: &Path) -> Result<bool, Box<dyn Error>> {
+    for entry in std::fs::read_dir(folder)?.flatten() {
+        let name = entry.file_name();
+        let number = name.to_str().and_then(|name| name.strip_prefix("point-"));
+        if number.is_some_and(|number| number.parse::<usize>().is_ok()) {
+            let path = entry.path();
+            remove_earlier(&path)?;
+            // Left if they hold other files.
+            for folder in [path.join(fields::FOLDER), path] {
+                let _ = std::fs::remove_dir(folder);
+            }
+        }
+    }
+    remove_earlier(folder)
+}
