@@ -11,10 +11,10 @@ use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
 use bearing_dynamics::numeric::profile::Profile;
-use bearing_dynamics::scene;
-use bearing_dynamics::scene::Format;
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::cage::add_cage_nodes;
 use bearing_dynamics::scene::build::motion::dynamic_problem;
+use bearing_dynamics::scene::{self, Document, Format, Subject, resolve_subject};
 
 use crate::bearings::{self, ANGULAR_CONTACT, Hertz, Lengths};
 use crate::case::CaseError;
@@ -26,6 +26,8 @@ use crate::oracles::statics::{Known, OracleBearing, OracleContact};
 pub const CAGE_TELEMETER: &str = include_str!("../../scenes/cage_telemeter.toml");
 /// The run of section 5.4.1.
 pub const CAGE_600RPM: &str = include_str!("../../scenes/cage_600rpm.toml");
+/// The spall of section 5.4.3 and the sensors of 5.4.4.
+const SPALL_SENSORS: &str = include_str!("../../scenes/spall_sensors.toml");
 /// Time between two samples, s.
 pub const INTERVAL: f64 = 1e-5;
 
@@ -43,6 +45,23 @@ fn options() -> (RunOptions, u64) {
         ..RunOptions::default()
     };
     (options, steps_per_sample)
+}
+
+/// The scene of sections 5.4.3 and 5.4.4 with these keys set, as `--set` does.
+///
+/// # Errors
+/// A scene that no longer reads, or a key that it does not take.
+pub fn spall_sensors(keys: &[(&str, &str)]) -> Result<AssemblyScene, CaseError> {
+    // The name leads to the scene's base.
+    let name = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/spall_sensors.toml");
+    let mut document = Document::read_str(SPALL_SENSORS, Format::Toml, name)?;
+    for (key, value) in keys {
+        document.set(key, value)?;
+    }
+    match resolve_subject(&document)? {
+        Subject::Assembly(scene) => Ok(*scene),
+        _ => Err(CaseError::message("no bearing in the scene")),
+    }
 }
 
 /// The scene of section 5.4.1 with the inner race at a constant speed (rad/s): balls and cage

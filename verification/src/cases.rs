@@ -108,6 +108,8 @@ mod slip_and_spin_3_4_5;
 mod solid_elements;
 #[path = "../solid_energy_and_steps/case.rs"]
 mod solid_energy_and_steps;
+#[path = "../spall_sensors_5_4_3/case.rs"]
+mod spall_sensors_5_4_3;
 #[path = "../statics_independent/case.rs"]
 pub mod statics_independent;
 #[path = "../steel_impact_2_4_3/case.rs"]
@@ -151,6 +153,7 @@ pub const CASES: &[Case] = &[
     cage_slip::CASE,
     raceway_profiles::CASE,
     cage_speed_table_5_4::CASE,
+    spall_sensors_5_4_3::CASE,
     solid_elements::CASE,
     solid_energy_and_steps::CASE,
     rod_wave::CASE,

@@ -272,7 +272,10 @@ fn lines_of(name: &str, spectrum: &Spectrum, scale: f64) -> Option<Curve> {
         .filter(|(_, amplitude)| **amplitude > SPECTRUM_FLOOR * highest)
         .map(|(bin, amplitude)| [bin as f64 * spectrum.bin_width, scale * amplitude])
         .collect();
-    (!points.is_empty()).then(|| Curve::new(name, thin(points, 4 * POINTS)))
+    // Low frequencies take the most room on a logarithmic axis; they are drawn bin by bin.
+    let (low, high) = points.split_at(points.len().min(POINTS));
+    let points = [low.to_vec(), thin(high.to_vec(), 3 * POINTS)].concat();
+    (!points.is_empty()).then(|| Curve::new(name, points))
 }
 
 /// `title`, description and file name part of the spectrum; quantity and unit of the amplitudes.
