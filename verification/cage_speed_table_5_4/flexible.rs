@@ -137,6 +137,16 @@ fn speed(
         .fit("the spacing of lines was identified from the three printed frequencies; which line it is was not")
         .absolute(1.001 * LINE, "one line of this window; the printed lines are two apart"),
     );
+    context.check(
+        Check::new(
+            &format!("{body}_energy_{shaft}"),
+            &format!("largest energy residual of a {body} cage with nodes over the kinetic energy, {shaft} Hz shaft"),
+            "1",
+            motion.residual,
+        )
+        .closed_form(0.0, "the ledger is closed")
+        .absolute(1e-3, "steps of an accuracy of 0.01, and the contacts of balls with modes left out of their matrix"),
+    );
     let play = Motion::largest_play(&rolling(TAU * hz)?);
     let turned = motion.cage.last().copied().unwrap_or(f64::NAN);
     context.check(

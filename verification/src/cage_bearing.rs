@@ -116,6 +116,8 @@ pub struct Motion {
     pub balls: Vec<f64>,
     /// Centre of the cage from the outer race's, y and z, m.
     pub cage_centre: Vec<[f64; 2]>,
+    /// Largest energy residual over the kinetic energy at the end; of runs with error control.
+    pub residual: f64,
     /// Root mean square of all pocket loads, N.
     pub pocket_rms: f64,
     /// Orientation of the cage about X, rad; as `cage`, but from where it started.
@@ -272,6 +274,8 @@ pub fn simulate_by_accuracy(
     let options = RunOptions {
         integrator: Integrator::Rosenbrock,
         stepping: Stepping::Accuracy(accuracy),
+        // At the first impacts of a start from rest little energy has been turned over.
+        energy_limit: 0.05,
         ..RunOptions::default()
     };
     let end = settle + interval * samples as f64;
@@ -290,9 +294,9 @@ pub fn simulate_by_accuracy(
             recording.get_or_insert_with(|| Recording::new(&simulation)).take(&simulation);
         }
     }
-    simulation.snapshot();
+    let residual = simulation.largest_residual() / simulation.snapshot().energy.kinetic;
     let motion = recording.map_or_else(Motion::default, |of| of.motion);
-    Ok(Motion { steps: simulation.steps, ..motion })
+    Ok(Motion { steps: simulation.steps, residual, ..motion })
 }
 
 /// Angles about X at one instant, rad, each up to whole turns.
