@@ -10,12 +10,11 @@ use crate::case::CaseError;
 use crate::context::CaseContext;
 use crate::motion::{done, request};
 
-/// A run of the scene as a user has it: rows, spectra over the window, steps.
+/// A run of the scene as a user has it: its rows and spectra over the window.
 pub struct Taken {
     pub table: RunTable,
     pub spectra: Vec<(String, Spectrum)>,
     pub interval: f64,
-    pub steps: u64,
 }
 
 pub fn take(keys: &[(&str, &str)]) -> Result<Taken, CaseError> {
@@ -24,8 +23,7 @@ pub fn take(keys: &[(&str, &str)]) -> Result<Taken, CaseError> {
     let (window_start, interval) = (run.window_start, run.output_interval);
     let session = done(scene.assembly()?, &request(&scene)?)?;
     let table = RunTable::new(&session, window_start)?;
-    let steps = session.motion.bearing().map_or(0, |moving| moving.steps);
-    Ok(Taken { spectra: table.spectra(), table, interval, steps })
+    Ok(Taken { spectra: table.spectra(), table, interval })
 }
 
 impl Taken {
