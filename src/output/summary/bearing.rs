@@ -192,7 +192,7 @@ struct Whirl {
     rest: f64,
 }
 
-/// `None` without the cage's columns.
+/// `None` without the cage's columns, and for a cage that stays on the axis.
 fn cage_whirl(table: &RunTable, prefix: &str) -> Option<Whirl> {
     let column = |name: &str| table.windowed(&format!("{prefix}{name}"));
     let [cage_y, cage_z] = [column("cage_y")?, column("cage_z")?];
@@ -209,7 +209,8 @@ fn cage_whirl(table: &RunTable, prefix: &str) -> Option<Whirl> {
     let mean = places().fold([0.0; 2], |sum, [y, z]| [sum[0] + y / count, sum[1] + z / count]);
     let angle = |[[y, z], [v, w]]: [[f64; 2]; 2]| (y * w - z * v).atan2(y * v + z * w);
     let turns = places().zip(places().skip(1)).map(|(a, b)| angle([a, b])).sum::<f64>() / TAU;
-    Some(Whirl { distance, turns, rest: mean[0].hypot(mean[1]) / distance })
+    // A cage that has not left the axis rests nowhere.
+    (distance > 0.0).then(|| Whirl { distance, turns, rest: mean[0].hypot(mean[1]) / distance })
 }
 
 /// Largest values over all steps, including those between rows.
