@@ -209,7 +209,7 @@ fn cage_whirl(table: &RunTable, prefix: &str) -> Option<Whirl> {
     let mean = places().fold([0.0; 2], |sum, [y, z]| [sum[0] + y / count, sum[1] + z / count]);
     let angle = |[[y, z], [v, w]]: [[f64; 2]; 2]| (y * w - z * v).atan2(y * v + z * w);
     let turns = places().zip(places().skip(1)).map(|(a, b)| angle([a, b])).sum::<f64>() / TAU;
-    // A cage that has not left the axis rests nowhere.
+    // A cage on the axis has no side.
     (distance > 0.0).then(|| Whirl { distance, turns, rest: mean[0].hypot(mean[1]) / distance })
 }
 
