@@ -121,6 +121,7 @@ fn only_the_sweep_knows_of_threads() {
     let known = [
         "src/commands/memory.rs",
         "src/commands/sweep/mod.rs",
+        "src/commands/sweep/runs.rs",
         "src/solids/threads.rs",
         "verification/src/mutants/mod.rs",
         "verification/src/runner.rs",

@@ -12,7 +12,7 @@ use crate::case::{Case, CaseError, Tier};
 use crate::check::{Check, Explanation};
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
-use crate::solid_bodies::cage::LITERAL;
+use crate::solid_bodies::cage::{CONVERGED, LITERAL};
 use crate::solids::{STEEL, Vec3, free_body, largest, mesh_of, name_of};
 use crate::surface_picture::{SurfacePicture, surface_picture};
 
@@ -37,10 +37,6 @@ const RELIEVED: Cage = Cage {
 /// Table 5.3, kg.
 const MASS: f64 = 0.069;
 
-/// First pairs in and out of the plane of the literal cage, Hz: converged on fine meshes of ten-node
-/// elements by two other finite-element programs. Kept as these two numbers alone: unlike
-/// `calculix_comparison` there are neither decks nor output to run anew.
-pub(crate) const CONVERGED: [f64; 2] = [2271.5, 3959.0];
 const OTHERS: &str = "converged by two other finite-element programs; kept as numbers alone, without decks or output";
 
 /// Meshes from coarse to fine.

@@ -11,9 +11,9 @@ use crate::cage_bearing::{
     Motion, kinematics, nominal_ratio, rolling, simulate_by_accuracy, speeding_up, with_nodes,
 };
 use crate::case::CaseError;
-use crate::cases::cage_modes_table_5_3::CONVERGED;
 use crate::check::Check;
 use crate::context::CaseContext;
+use crate::solid_bodies::cage::CONVERGED;
 use bearing_dynamics::output::spectrum::spectrum;
 
 /// Window of 2.62144 s, as for the rigid cage.

@@ -29,7 +29,7 @@ mod bushing_scene_3_4_1;
 #[path = "../bushing_sleeve_motions/case.rs"]
 mod bushing_sleeve_motions;
 #[path = "../cage_modes_table_5_3/case.rs"]
-pub mod cage_modes_table_5_3;
+mod cage_modes_table_5_3;
 #[path = "../cage_slip/case.rs"]
 mod cage_slip;
 #[path = "../cage_speed_table_5_4/case.rs"]
