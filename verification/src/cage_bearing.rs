@@ -256,7 +256,7 @@ pub fn with_nodes(lines: &str, speed: Profile) -> Result<Assembly, CaseError> {
     problem.inner.rotation = Rotation::Speed(speed);
     let mut all = problem.assembly();
     add_cage_nodes(&mut all, [&scene.dynamics].into_iter())
-        .map_err(|error| CaseError::message(&error.to_string()))?;
+        .map_err(|error| CaseError::message(error.to_string()))?;
     Ok(all)
 }
 

@@ -50,7 +50,7 @@ pub struct BuiltCage {
 #[derive(Clone, Debug)]
 pub enum CageForm {
     Rigid,
-    Reduced(FloatingReduction),
+    Reduced(Box<FloatingReduction>),
     /// In explicit steps.
     Elements(Box<SolidPart>),
 }
@@ -144,7 +144,7 @@ fn add(
     all.bodies[body].mobility = Mobility::Free(inertia);
     let gauges = if modes > 0 { gauges(&mesh, &surfaces.outer, &reduction) } else { Vec::new() };
     all.floating.push(FloatingSolid { body, frame: reduction.frame.clone(), gauges });
-    let form = if modes > 0 { CageForm::Reduced(reduction) } else { CageForm::Rigid };
+    let form = if modes > 0 { CageForm::Reduced(Box::new(reduction)) } else { CageForm::Rigid };
     Ok(BuiltCage { bearing, name, mesh, model, form })
 }
 
