@@ -34,8 +34,8 @@ pub struct FloatingReduction {
 
 impl FloatingReduction {
     /// Displacements of all nodes in axes of the frame for these amplitudes (m), m.
-    pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
-        superposed(&self.shapes, gone)
+    pub fn displacement(&self, amplitudes: &[f64]) -> Vec<Vec3> {
+        superposed(&self.shapes, amplitudes)
     }
 }
 

@@ -115,8 +115,8 @@ pub(crate) fn superposed(shapes: &[Vec<Vec3>], amplitudes: &[f64]) -> Vec<Vec3> 
 
 impl Reduction {
     /// Displacements of all nodes for modal coordinates (m), m.
-    pub fn displacement(&self, gone: &[f64]) -> Vec<Vec3> {
-        superposed(&self.shapes, gone)
+    pub fn displacement(&self, amplitudes: &[f64]) -> Vec<Vec3> {
+        superposed(&self.shapes, amplitudes)
     }
 
     /// Outward displacement of each bore node under outward unit forces on each, by the modes, m/N.

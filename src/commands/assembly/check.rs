@@ -270,7 +270,7 @@ fn of_run(scene: &AssemblyScene, housings: &[Housing]) -> Vec<(&'static str, Str
         // Shafts are not meshed here.
         let beams = scene.bodies.iter().filter_map(|body| body.beam.as_deref());
         let shafts = beams.filter(|beam| beam.in_elements.is_some()).count();
-        let cages = usize::from(scene.has_cages_in_elements());
+        let cages = scene.cages_in_elements();
         if shafts + cages > 0 {
             solids = vec![0.0; solids.len() + shafts + cages];
         }

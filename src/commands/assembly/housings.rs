@@ -17,7 +17,7 @@ use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::members::flexible_shaft::{ElasticShaft, ShaftLoad};
 use bearing_dynamics::motion::coupling::{CouplingOptions, SolidPart};
-use bearing_dynamics::motion::simulation::RunOptions;
+use bearing_dynamics::motion::simulation::{RunOptions, Start};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::HousedParts;
 use bearing_dynamics::scene::Document;
@@ -76,6 +76,16 @@ pub fn refuse(document: &Document, scene: &AssemblyScene, housings: &[Housing]) 
         return Err(format!(
             "{place}: numerics.start: refused: a shaft of the scene is solved in elements, which start undeformed, races in their initial \
              positions. Hint: leave it out, or write method = \"reduced\" in [body.NAME.beam.mesh]"
+        )
+        .into());
+    }
+    if scene.has_cages_in_elements()
+        && scene.run().is_some_and(|run| run.options.start == Start::Nominal)
+    {
+        let place = document.place_of(&About::key("numerics.start"));
+        return Err(format!(
+            "{place}: numerics.start: refused: a cage solved in elements starts in equilibrium. Hint: leave it out, or write \
+             body = \"reduced\" in [bearing.cage]"
         )
         .into());
     }

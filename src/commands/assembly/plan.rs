@@ -75,9 +75,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
         notes.extend(condensing_notes(lists, &housings));
     }
     // `of_steps` reports the steps of scenes with bushings or shafts in elements.
-    let in_elements = scene.has_bushings_in_elements()
-        || scene.has_shafts_in_elements()
-        || scene.has_cages_in_elements();
+    let in_elements = scene.has_parts_in_elements();
     let has_step_note = housings.is_empty() || in_elements;
     if let (Some(settings), false) = (scene.run(), has_step_note) {
         notes.push(explicit_note(lists, &housings, settings));
@@ -110,7 +108,7 @@ fn of_steps(
     let bushings = take_bushings(scene, &mut assembly)?;
     let shafts = take_shafts(scene, &mut assembly)?;
     let elements = (&bushings[..], &shafts[..], &cages[..]);
-    let in_elements = !(bushings.is_empty() && shafts.is_empty()) || scene.has_cages_in_elements();
+    let in_elements = scene.has_parts_in_elements();
     // Races without their housings or bushings would have no support.
     let alone = !in_elements && (housings.is_empty() || reduced.is_some());
     let (request, choice) = if in_elements {

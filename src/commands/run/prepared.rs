@@ -129,9 +129,7 @@ impl<'s> Prepared<'s> {
         let housings = housings::prepare(document, scene)?;
         housings::refuse(document, scene, &housings)?;
         let lists = Box::new(Lists::of(scene));
-        let in_elements = scene.has_bushings_in_elements()
-            || scene.has_shafts_in_elements()
-            || scene.has_cages_in_elements();
+        let in_elements = scene.has_parts_in_elements();
         let method = match scene.housing_method() {
             None if in_elements => SolutionMethod::Explicit,
             None => SolutionMethod::Rigid,

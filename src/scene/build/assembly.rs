@@ -302,11 +302,22 @@ impl AssemblyScene {
         beams.any(|beam| beam.in_elements.is_some())
     }
 
+    /// Number of cages whose elements move in a run.
+    pub fn cages_in_elements(&self) -> usize {
+        let cages = self.bearings.iter().filter_map(|of| of.scene.dynamics.flexible_cage.as_ref());
+        cages.filter(|cage| cage.method == CageMethod::Explicit).count()
+    }
+
     /// Returns whether elements of a cage move in a run.
     pub fn has_cages_in_elements(&self) -> bool {
-        let mut cages =
-            self.bearings.iter().filter_map(|of| of.scene.dynamics.flexible_cage.as_ref());
-        cages.any(|cage| cage.method == CageMethod::Explicit)
+        self.cages_in_elements() > 0
+    }
+
+    /// Returns whether elements of a part beside the housings move in a run.
+    pub fn has_parts_in_elements(&self) -> bool {
+        self.has_bushings_in_elements()
+            || self.has_shafts_in_elements()
+            || self.has_cages_in_elements()
     }
 
     pub fn run(&self) -> Option<&RunSettings> {
