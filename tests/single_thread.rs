@@ -78,8 +78,7 @@ fn a_sweep_runs_on_the_threads_it_was_given(path: &Path, folder: &Path) {
     let cores = std::thread::available_parallelism().unwrap().get();
     for (given, workers) in [(Some(1), 1), (Some(2), 2), (Some(5), 5), (None, cores)] {
         let out = folder.join(format!("sweep {workers} {}", given.is_some()));
-        let mut arguments =
-            vec!["sweep", "--cold", "--vary", "bearing.ball_phase=0 deg .. 1 deg / 100000"];
+        let mut arguments = vec!["sweep", "--vary", "bearing.ball_phase=0 deg .. 1 deg / 100000"];
         let text = workers.to_string();
         if given.is_some() {
             arguments.extend(["--threads", &text]);

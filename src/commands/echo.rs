@@ -191,6 +191,26 @@ pub fn hertz([inner, outer]: [&HertzContact; 2]) -> Echo {
     }))
 }
 
+/// Kinematic frequencies of rolling without slip in one line: in Hz, or per turn of the shaft without a speed.
+pub fn frequency_line(scene: &Scene) -> String {
+    let ratios = kinematic_ratios(scene);
+    let [inner, outer] = [scene.inner_speed, scene.outer_speed]
+        .map(|speed| speed.map(|speed| speed / std::f64::consts::TAU));
+    let has_speed = inner.is_some() || outer.is_some();
+    let outer = outer.unwrap_or(0.0);
+    let relative = if has_speed { inner.unwrap_or(0.0) - outer } else { 1.0 };
+    let named = [
+        ("cage and ball set", (outer + ratios.cage * relative).abs()),
+        ("BPFO", (ratios.ball_pass_outer * relative).abs()),
+        ("BPFI", (ratios.ball_pass_inner * relative).abs()),
+        ("BSF", (ratios.ball_spin * relative).abs()),
+        ("2 BSF", 2.0 * (ratios.ball_spin * relative).abs()),
+    ];
+    let texts: Vec<String> = named.iter().map(|(name, of)| format!("{name} {of:.4}")).collect();
+    let unit = if has_speed { "Hz" } else { "per turn of the shaft" };
+    format!("frequencies of rolling without slip: {} {unit}", texts.join(", "))
+}
+
 /// Kinematic frequencies as ratios to the shaft frequency, and in Hz if a speed is given. If the outer race turns,
 /// they follow from the relative speed of the races, and its frequency is added to that of the cage.
 pub fn frequencies(scene: &Scene) -> Echo {
@@ -203,6 +223,7 @@ pub fn frequencies(scene: &Scene) -> Echo {
         ("ball_pass_outer", ratios.ball_pass_outer, 0.0),
         ("ball_pass_inner", ratios.ball_pass_inner, 0.0),
         ("ball_spin", ratios.ball_spin, 0.0),
+        ("twice_ball_spin", 2.0 * ratios.ball_spin, 0.0),
     ] {
         let mut entry = Map::new();
         let turns = inner.unwrap_or(0.0);

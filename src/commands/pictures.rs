@@ -1,5 +1,6 @@
 //! Plots of a static solution: load zone, ball force over azimuth, moment over tilt.
 
+use bearing_dynamics::equilibrium::error::StaticsError;
 use bearing_dynamics::equilibrium::statics::{
     Condition, StaticOptions, StaticProblem, StaticSolution, solve_from,
 };
@@ -7,6 +8,7 @@ use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::plots::{
     Axis, Curve, LoadZone, PolarPlot, Style, XyPlot, load_zone, polar, xy,
 };
+use bearing_dynamics::output::warnings::{Warning, WarningCode};
 use bearing_dynamics::scene::{Plot, Scene};
 use nalgebra::SVector;
 use std::error::Error;
@@ -21,29 +23,49 @@ const LARGEST_TILT_DEGREES: f64 = 0.3;
 /// File names of the plots, in the order of [`Plot`].
 pub const NAMES: [&str; 3] = ["load_zone.svg", "polar.svg", "moment_tilt.svg"];
 
-/// Writes the requested plots; returns their paths.
+/// Writes the requested plots; returns their paths, and a warning for each whose curve could not be computed.
+///
+/// # Errors
+/// A file that cannot be written.
 pub fn write(
     folder: &Path,
     scene: &Scene,
     problem: &StaticProblem,
     solution: &StaticSolution,
-) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+) -> Result<(Vec<PathBuf>, Vec<Warning>), Box<dyn Error>> {
     let title = scene.title.clone().unwrap_or_else(|| "Bearing".into());
-    let mut written = Vec::new();
+    let (mut written, mut warnings) = (Vec::new(), Vec::new());
     for plot in &scene.plots {
         let (name, svg) = match plot {
-            Plot::LoadZone => (
-                NAMES[0],
-                load_zone(&LoadZone::new(title.clone(), &problem.geometry, &solution.balls))?,
-            ),
-            Plot::Polar => (NAMES[1], force_over_azimuth(&title, problem, solution)?),
-            Plot::MomentTilt => (NAMES[2], moment_over_tilt(&title, problem)?),
+            Plot::LoadZone => {
+                let zone = LoadZone::new(title.clone(), &problem.geometry, &solution.balls);
+                (NAMES[0], load_zone(&zone).map_err(Into::into))
+            }
+            Plot::Polar => (NAMES[1], force_over_azimuth(&title, problem, solution)),
+            Plot::MomentTilt => (NAMES[2], moment_over_tilt(&title, problem)),
         };
-        let path = folder.join(name);
-        write_atomic(&path, svg.as_bytes())?;
-        written.push(path);
+        match svg {
+            Ok(svg) => {
+                let path = folder.join(name);
+                write_atomic(&path, svg.as_bytes())?;
+                written.push(path);
+            }
+            Err(error) => warnings.push(Warning::new(
+                WarningCode::PictureNotDrawn,
+                format!("{name} was not drawn: {error}"),
+            )),
+        }
     }
-    Ok(written)
+    Ok((written, warnings))
+}
+
+/// Equilibrium next to another one; if the search from there fails, from the start of the scene's own search.
+fn solve_next(
+    problem: &StaticProblem,
+    start: &SVector<f64, 5>,
+) -> Result<StaticSolution, StaticsError> {
+    let options = StaticOptions::default();
+    solve_from(problem, Some(start), &options).or_else(|_| solve_from(problem, None, &options))
 }
 
 /// Normal load between ball and race over the azimuth of the ball.
@@ -58,7 +80,7 @@ fn force_over_azimuth(
     let mut curves = [Vec::new(), Vec::new()];
     for step in 0..PHASES {
         turned.ball_phase = problem.ball_phase + pitch * step as f64 / PHASES as f64;
-        let here = solve_from(&turned, Some(&start), &StaticOptions::default())?;
+        let here = solve_next(&turned, &start)?;
         start = here.coordinates;
         for ball in &here.balls {
             curves[0].push([ball.azimuth, ball.outer.normal_load]);
@@ -95,7 +117,10 @@ fn moment_over_tilt(title: &str, problem: &StaticProblem) -> Result<String, Box<
     for step in 0..TILTS {
         let tilt = largest * step as f64 / (TILTS - 1) as f64;
         tilted.conditions[3] = Condition::Displacement(tilt);
-        let here = solve_from(&tilted, start.as_ref(), &StaticOptions::default())?;
+        let here = match &start {
+            Some(start) => solve_next(&tilted, start)?,
+            None => solve_from(&tilted, None, &StaticOptions::default())?,
+        };
         start = Some(here.coordinates);
         points.push([tilt.to_degrees(), here.loads[3]]);
     }

@@ -71,7 +71,8 @@ pub fn of_equilibrium(
         warnings.push(Warning::new(WarningCode::IndeterminatePosition, text));
     }
     if solution.saddles_left > 0 {
-        let text = "an unstable equilibrium was left for a stable one next to it, whose mirror image is an equilibrium too";
+        let text = "an unstable equilibrium was left for a stable one next to it, whose mirror image is an equilibrium too; if the support keeps \
+                    a race upright, fix its tilts, as in tilt_y = { tilt = \"0 deg\" }";
         warnings.push(Warning::new(WarningCode::SaddleLeft, text));
     }
     let bearings = scene.bearings.iter().zip(&assembly.bearings).zip(&solution.bearings);

@@ -5,6 +5,7 @@
 //! file and ends with the process.
 
 use crate::output::atomic::remove_partials;
+use crate::output::fields::FOLDER as FIELDS;
 use crate::output::json;
 use crate::output::pack::{MANIFEST, RESOLVED};
 use serde_json::Value;
@@ -49,6 +50,11 @@ pub enum FolderError {
     )]
     Busy { folder: PathBuf },
     #[error(
+        "{} holds {file}, but no results of this program; choose another --out, new or empty",
+        folder.display()
+    )]
+    NotEmpty { folder: PathBuf, file: String },
+    #[error(
         "{} was not written by this program ({reason}) and is not replaced; move it away, or choose \
          another --out",
         file.display()
@@ -79,7 +85,7 @@ impl Drop for ResultsFolder {
 /// processes.
 ///
 /// # Errors
-/// All of [`FolderError`] except [`FolderError::Foreign`].
+/// All of [`FolderError`] except [`FolderError::Foreign`] and [`FolderError::NotEmpty`].
 pub fn claim(path: &Path) -> Result<ResultsFolder, FolderError> {
     let mut made = Vec::new();
     let (lock, locked) = loop {
@@ -178,7 +184,8 @@ const TABLES: [&str; 7] = [
 /// Kind of the results in a folder, from the records of this program.
 ///
 /// # Errors
-/// [`FolderError::Foreign`] for a file that a command would replace and that another program wrote.
+/// [`FolderError::Foreign`] for a file that a command would replace and that another program wrote;
+/// [`FolderError::NotEmpty`] for a folder with other files and no results.
 pub fn content(folder: &Path) -> Result<FolderContent, FolderError> {
     let there = |name: &str| folder.join(name).exists();
     let foreign = |name: &str, reason: &str| FolderError::Foreign {
@@ -221,8 +228,18 @@ pub fn content(folder: &Path) -> Result<FolderContent, FolderError> {
     }
     match TABLES.iter().find(|name| there(name)) {
         Some(name) => Err(foreign(name, "no record of this program is in the folder")),
-        None => Ok(FolderContent::Nothing),
+        None => match other_file(folder) {
+            Some(file) => Err(FolderError::NotEmpty { folder: folder.to_path_buf(), file }),
+            None => Ok(FolderContent::Nothing),
+        },
     }
+}
+
+/// A file or folder that this program does not write before its records.
+fn other_file(folder: &Path) -> Option<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.find(|name| !name.ends_with(".partial") && name != ".lock" && name != FIELDS)
 }
 
 /// Returns whether a record names this program: in a table in summaries, one level deeper in runs with a

@@ -305,13 +305,22 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
     Ok(Value::Object(rows))
 }
 
-/// Number of balls loaded by the inner race, and the arc from the first to the last of them in
-/// rad: the full circle minus the widest gap between neighbouring loaded balls.
+/// Share of the largest load from which a ball counts as loaded: its own weight alone does not load it.
+const LOADED: f64 = 0.01;
+
+fn largest_load(balls: &[BallState], load: fn(&BallState) -> f64) -> f64 {
+    balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
+}
+
+/// Number of balls loaded by the inner race (by 1 % of the largest load or more), and the arc from the first to the
+/// last of them in rad: the full circle minus the widest gap between neighbouring loaded balls.
 pub fn load_zone_of(balls: &[BallState]) -> (usize, f64) {
     let tau = std::f64::consts::TAU;
+    let largest = largest_load(balls, |ball| ball.inner.normal_load);
+    let is_loaded = |load: f64| load > 0.0 && load >= LOADED * largest;
     let mut azimuths: Vec<f64> = balls
         .iter()
-        .filter(|ball| ball.inner.normal_load > 0.0)
+        .filter(|ball| is_loaded(ball.inner.normal_load))
         .map(|ball| ball.azimuth.rem_euclid(tau))
         .collect();
     azimuths.sort_by(f64::total_cmp);
@@ -325,10 +334,11 @@ pub fn load_zone_of(balls: &[BallState]) -> (usize, f64) {
 }
 
 pub(super) fn load_zone(balls: &[BallState]) -> Result<Value, ResultsError> {
-    let largest = |load: fn(&BallState) -> f64| {
-        balls.iter().map(load).fold(0.0, |a: f64, b| if b > a { b } else { a })
+    let largest = |load| largest_load(balls, load);
+    let loaded = |load: fn(&BallState) -> f64| {
+        let least = LOADED * largest(load);
+        balls.iter().filter(|ball| load(ball) > 0.0 && load(ball) >= least).count()
     };
-    let loaded = |load: fn(&BallState) -> f64| balls.iter().filter(|ball| load(ball) > 0.0).count();
     let (_, extent) = load_zone_of(balls);
     Ok(json!({
         "extent": quantity("load zone", extent.to_degrees(), "deg")?,

@@ -34,8 +34,9 @@ pub enum HousingSetupError {
     )]
     FlatBore { bore: String, faces: usize, area: f64, normal: [f64; 3], known: Vec<String> },
     #[error(
-        "housing.bore: the bore has a radius of {:.4} mm, but the outer race about {:.4} mm. Hint: is \
-         the mesh's unit (solid.mesh.unit) mm or m? Is \"{bore}\" the right surface?",
+        "housing.bore: the bore has a radius of {:.4} mm, but the outer race about {:.4} mm. Allowed: a difference of 1 %. \
+         Hint: is the mesh's unit (solid.mesh.unit) mm or m? Is \"{bore}\" the right surface, and the race's \
+         outer_radius right?",
         1e3 * *.radius, 1e3 * *.race
     )]
     FarFromTheRace { bore: String, radius: f64, race: f64 },

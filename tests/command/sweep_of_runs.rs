@@ -131,8 +131,7 @@ fn a_point_that_fails_is_listed_and_the_others_go_on() {
     );
 
     for (arguments, why) in [
-        (&["--cold"][..], "--cold applies to statics"),
-        (&["--of", "statics"], "holds a sweep of runs"),
+        (&["--of", "statics"][..], "holds a sweep of runs"),
         (&["--vary", "numerics.end=1 ms, 2 ms"], "output.window_start"),
         (&["--vary", "bearing.balls=30, 31"], "30 balls"),
     ] {

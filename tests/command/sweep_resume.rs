@@ -187,7 +187,6 @@ fn rows_of_another_sweep_are_refused_until_they_are_discarded() {
     for arguments in [
         vec!["sweep", &other, "--vary", vary, "--out", &out],
         vec!["sweep", path, "--vary", &short, "--out", &out],
-        vec!["sweep", path, "--vary", vary, "--out", &out, "--cold"],
         vec!["sweep", path, "--vary", vary, "--vary", "bearing.balls=8,9", "--out", &out],
     ] {
         let message = refused(&arguments);

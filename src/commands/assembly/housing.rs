@@ -28,6 +28,7 @@ use bearing_dynamics::solids::bore_equilibrium::Axial;
 use bearing_dynamics::solids::condensation::{CondensedBore, Sizes, condense_over, memory, sizes};
 use bearing_dynamics::solids::support::free_motions;
 use bearing_dynamics::solids::tangent::Unknowns;
+use std::fmt::Write;
 use std::time::Instant;
 
 /// Distance from the race, as a part of its radius, beyond which bore nodes are not tested for contact until
@@ -235,16 +236,21 @@ impl Housing {
             um if um < 0.0 => "clearance",
             _ => "transition",
         };
-        line(
-            "housing fit",
-            format!(
-                "bore radius {:.4} mm, {} nodes, {:.4} mm wide; {kind} {um:+.4} um radial = {:+.4} um diametral",
-                1e3 * setup.bore_radius,
-                setup.nodes.len(),
-                1e3 * setup.width,
-                2.0 * um
-            ),
+        let mut fit = format!(
+            "bore radius {:.4} mm, {} nodes, {:.4} mm wide; {kind} {um:+.4} um radial = {:+.4} um diametral",
+            1e3 * setup.bore_radius,
+            setup.nodes.len(),
+            1e3 * setup.width,
+            2.0 * um
         );
+        let by_radius = setup.race_radius.map(|radius| 1e6 * (radius - setup.bore_radius));
+        if let Some(other) = by_radius.filter(|other| (other - um).abs() > 0.1) {
+            let _ = write!(
+                fit,
+                "; outer_race.outer_radius would make it {other:+.4} um and has no effect on the fit"
+            );
+        }
+        line("housing fit", fit);
         line(
             "bore shape",
             format!(

@@ -7,7 +7,7 @@ use super::lists::Lists;
 use super::{Fallible, defaults, echo, name_of, plan};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::echo::{frequencies, hertz, sections};
+use crate::commands::echo::{frequencies, frequency_line, hertz, sections};
 use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, pictures, print, record, table};
 use bearing_dynamics::assembly::static_lists::StaticAssembly;
@@ -25,7 +25,7 @@ use bearing_dynamics::output::summary::housing::{
     PEAK_PRESSURE, equilibrium_section, solver_section,
 };
 use bearing_dynamics::output::summary::solid::field_sections;
-use bearing_dynamics::output::warnings::{Warning, solid as of_solid};
+use bearing_dynamics::output::warnings::{Warning, lines, solid as of_solid};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Plot};
 use bearing_dynamics::solids::bore_equilibrium::{BoreState, POSE_NAMES};
@@ -172,6 +172,10 @@ impl Found<'_> {
                 solution.iterations
             );
         }
+        for (placed, name) in self.scene.bearings.iter().zip(&self.names) {
+            let of = placed.name.as_ref().map_or(String::new(), |_| format!("{name}: "));
+            text += &format!("{of}{}\n", frequency_line(&placed.scene));
+        }
         if let Some(ratio) = &self.inertia {
             text += &format!("note: inertia left out: {}\n", ratio.text());
         }
@@ -183,7 +187,8 @@ impl Found<'_> {
         text
     }
 
-    fn draw(&self, folder: &Path) -> Fallible<Vec<PathBuf>> {
+    /// Draws the pictures; returns their files, and a warning for each that could not be drawn.
+    fn draw(&self, folder: &Path) -> Fallible<(Vec<PathBuf>, Vec<Warning>)> {
         let common = self.scene.common();
         if let Some((problem, solution)) = &self.of_one {
             let mut drawn = common.clone();
@@ -203,7 +208,7 @@ impl Found<'_> {
                 written.push(path);
             }
         }
-        Ok(written)
+        Ok((written, Vec::new()))
     }
 
     /// Summary and tables.
@@ -333,7 +338,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let start = Instant::now();
-    let mut written = found.draw(&folder)?;
+    let mut written = found.write(&folder, &found.record)?;
     for housing in &found.settled {
         written.extend(housing.write(&folder)?);
     }
@@ -341,9 +346,15 @@ pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
         let files: Vec<_> = found.settled.iter().map(|of| (0.0, of.fields_file())).collect();
         written.push(write_list(&folder, &files)?);
     }
+    let (pictures, warnings) = found.draw(&folder)?;
+    written.extend(pictures);
+    print(&lines(&warnings))?;
     let mut record = found.record.clone();
     record.seconds.push(("plots".into(), start.elapsed().as_secs_f64()));
-    written.extend(found.write(&folder, &record)?);
+    if let Some((_, all)) = record.sections.iter_mut().find(|(name, _)| name == "warnings") {
+        *all = json!([&found.warnings[..], &warnings].concat());
+    }
+    found.write(&folder, &record)?;
     print(&format!("wrote {} files to {}\n", written.len(), folder.display()))?;
     Ok(Outcome::Done)
 }

@@ -7,6 +7,7 @@ use bearing_dynamics::output::recorder::seat::prefix;
 use bearing_dynamics::output::session::{Motion, Session};
 use bearing_dynamics::output::summary::housing::PEAK_PRESSURE;
 use bearing_dynamics::output::table::RunTable;
+use serde_json::Value;
 
 type Lines = Vec<(String, String)>;
 
@@ -84,6 +85,54 @@ pub fn key_figures(session: &Session, table: &RunTable, seconds: f64) -> String 
             ("steps".into(), text)
         }
     });
+    lines.iter().map(|(label, value)| format!("{label:<22} {value}\n")).collect()
+}
+
+/// Kinematic frequencies, speeds and slips of balls and cage, and the highest peak of each spectrum, from the summary.
+pub fn rotation(summary: &Value) -> String {
+    const LINES: [(&str, &str); 3] = [
+        ("BPFO", "ball_pass_outer_frequency"),
+        ("BPFI", "ball_pass_inner_frequency"),
+        ("BSF", "ball_spin_frequency"),
+    ];
+    const PARTS: [(&str, &str); 2] = [("ball set", "ball_set"), ("cage", "cage")];
+    let kinematics = &summary["kinematics"];
+    let sections: Vec<(String, &Value)> = match kinematics.as_object() {
+        Some(_) if kinematics["inner_race_speed"].is_object() => vec![(String::new(), kinematics)],
+        Some(named) => named.iter().map(|(name, of)| (format!("{name} "), of)).collect(),
+        None => Vec::new(),
+    };
+    let value = |of: &Value, key: &str| of[key]["value"].as_f64();
+    let mut lines = Lines::new();
+    for (name, of) in sections {
+        let found = |(label, key): &(&str, &str)| Some((label.to_string(), value(of, key)?));
+        let mut frequencies: Vec<(String, f64)> = LINES.iter().filter_map(found).collect();
+        if let Some(spin) = value(of, "ball_spin_frequency") {
+            frequencies.push(("2 BSF".into(), 2.0 * spin));
+        }
+        let texts: Vec<_> = frequencies.iter().map(|(l, f)| format!("{l} {f:.3} Hz")).collect();
+        if !texts.is_empty() {
+            lines.push((format!("{name}frequencies"), texts.join(", ")));
+        }
+        for (label, key) in PARTS {
+            let Some(frequency) = value(of, &format!("{key}_frequency")) else { continue };
+            let slip = value(of, &format!("{key}_slip"))
+                .map_or(String::new(), |slip| format!(", slip {:.3} %", 1e2 * slip));
+            lines.push((format!("{name}{label}"), format!("{frequency:.3} Hz{slip}")));
+        }
+    }
+    let channels = summary["spectra"]["channels"].as_object();
+    for (channel, of) in channels.into_iter().flatten() {
+        let highest = &of["peaks"][0];
+        let (Some(frequency), Some(amplitude)) =
+            (value(highest, "frequency"), value(highest, "amplitude"))
+        else {
+            continue;
+        };
+        let unit = highest["amplitude"]["unit"].as_str().unwrap_or("");
+        let text = format!("highest peak {frequency:.3} Hz, {amplitude:.4e} {unit}");
+        lines.push((format!("spectrum {channel}"), text));
+    }
     lines.iter().map(|(label, value)| format!("{label:<22} {value}\n")).collect()
 }
 

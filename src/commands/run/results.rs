@@ -1,6 +1,6 @@
 //! Results of a run: fields during the run; tables, plots and the summary at its end.
 
-use super::figures::key_figures;
+use super::figures::{key_figures, rotation};
 use super::prepared::{Fields, Prepared, SolidOf, SolutionMethod};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
@@ -124,8 +124,10 @@ pub(super) fn write_results(
             Prepared::Bearings { .. } | Prepared::Rubber { .. } => None,
         },
     };
-    let written = write_run_results(folder, session, &table, &spectra, &report)?;
-    let mut text = key_figures(session, &table, seconds.simulate) + &lines(&extras.warnings);
+    let (written, summary) = write_run_results(folder, session, &table, &spectra, &report)?;
+    let mut text = key_figures(session, &table, seconds.simulate)
+        + &rotation(&summary)
+        + &lines(&extras.warnings);
     for line in &extras.lines {
         text += &format!("{line}\n");
     }

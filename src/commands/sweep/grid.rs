@@ -12,6 +12,8 @@ use std::ops::Range;
 
 pub struct Grid {
     pub axes: Vec<SweepAxis>,
+    /// All keys change together, value by value.
+    together: bool,
 }
 
 /// More points than this in one sweep are taken for a mistake.
@@ -19,7 +21,11 @@ const MOST_POINTS: usize = 100_000_000;
 
 impl Grid {
     /// Axes from `key=values` texts, or from the scene's own table if there are none.
-    pub fn new(document: &Document, vary: &[String]) -> Result<Grid, Box<dyn Error>> {
+    pub fn new(
+        document: &Document,
+        vary: &[String],
+        together: bool,
+    ) -> Result<Grid, Box<dyn Error>> {
         let mut axes: Vec<SweepAxis> = Vec::new();
         for text in vary {
             let Some((key, values)) = text.split_once('=') else {
@@ -59,9 +65,23 @@ impl Grid {
                 }
             }
         }
+        let together = together || (vary.is_empty() && document.sweeps_together());
+        if together {
+            let first = axes[0].len();
+            if let Some(other) = axes.iter().find(|axis| axis.len() != first) {
+                return Err(format!(
+                    "{} has {first} values and {} has {}; keys that vary together need as many of each",
+                    axes[0].key,
+                    other.key,
+                    other.len()
+                )
+                .into());
+            }
+            return Ok(Grid { axes, together });
+        }
         let points = axes.iter().try_fold(1usize, |points, axis| points.checked_mul(axis.len()));
         match points {
-            Some(points) if points <= MOST_POINTS => Ok(Grid { axes }),
+            Some(points) if points <= MOST_POINTS => Ok(Grid { axes, together }),
             _ => {
                 Err(format!("the grid has more than {MOST_POINTS} points; vary fewer values")
                     .into())
@@ -70,7 +90,8 @@ impl Grid {
     }
 
     pub fn len(&self) -> usize {
-        self.axes.iter().map(SweepAxis::len).product()
+        let axes = if self.together { &self.axes[..1] } else { &self.axes };
+        axes.iter().map(SweepAxis::len).product()
     }
 
     /// Points of each block of `size`.
@@ -81,6 +102,9 @@ impl Grid {
 
     /// Index on every axis of a point.
     pub fn indices(&self, point: usize) -> Vec<usize> {
+        if self.together {
+            return vec![point; self.axes.len()];
+        }
         let mut rest = point;
         let mut indices = vec![0; self.axes.len()];
         for (index, axis) in indices.iter_mut().zip(&self.axes).rev() {
@@ -132,14 +156,14 @@ impl Grid {
         if others.any(|point| problem(point).is_ok()) { Ok(()) } else { Err(first) }
     }
 
-    /// SHA-256 of scene, axes, program version and mode, to which the rows of an unfinished sweep belong. `mesh` is the content of
+    /// SHA-256 of scene, axes and program version, to which the rows of an unfinished sweep belong. `mesh` is the content of
     /// the mesh files of the scene.
-    pub fn hash(&self, document: &Document, mesh: &[u8], cold: bool) -> String {
+    pub fn hash(&self, document: &Document, mesh: &[u8]) -> String {
         let mut hash = Sha256::new();
         hash.update(document.text());
         document.bases().iter().for_each(|(_, text)| hash.update(text));
         hash.update(mesh);
-        hash.update(format!("{:?} {cold} {}", self.axes, env!("CARGO_PKG_VERSION")));
+        hash.update(format!("{:?} {} {}", self.axes, self.together, env!("CARGO_PKG_VERSION")));
         hexadecimal(hash)
     }
 }

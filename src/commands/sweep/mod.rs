@@ -1,7 +1,7 @@
 //! `bearing sweep SCENE --vary key=values`: one equilibrium or run for each point of a grid, one table for all.
 //!
-//! Equilibria are solved in blocks of fixed size. Inside a block each search starts from the solution of the point before, and blocks share
-//! nothing. Neither the number of threads nor an interruption changes a bit of the table.
+//! Each point is solved as `bearing statics` solves its scene. Neither the number of threads nor an interruption changes a
+//! bit of the table.
 
 mod grid;
 pub(super) mod housings;
@@ -27,7 +27,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use table::Table;
 
-/// Points in a block: enough for warm starts to pay, few enough to lose little when interrupted.
+/// Points that one thread solves before they are written.
 const BLOCK: usize = 16;
 /// The same if points take seconds and share nothing: with springs fitted to a bushing, or modes of a shaft of tetrahedra.
 const SLOW_BLOCK: usize = 2;
@@ -49,9 +49,9 @@ pub struct Arguments {
     /// Number of threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Of statics: start every point cold instead of from its neighbour
+    /// Vary all keys together, value by value, instead of every combination
     #[arg(long)]
-    cold: bool,
+    together: bool,
     /// Discard an unfinished sweep in the results folder
     #[arg(long)]
     fresh: bool,
@@ -67,7 +67,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let interrupted = interruption(|| {})?;
     let document = Document::read_file(&arguments.scene)?;
-    let grid = Grid::new(&document, &arguments.vary)?;
+    let grid = Grid::new(&document, &arguments.vary, arguments.together)?;
     for axis in &grid.axes {
         if let Some(note) = reach(&document, "--vary", &axis.key, &axis.key)? {
             print(&format!("note: {note}\n"))?;
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let subject = first.as_ref().ok().cloned().or_else(whole);
     let columns = point::columns(&grid, subject.as_ref());
     let block = block_size(&grid, subject.as_ref());
-    let hash = grid.hash(&document, &mesh, arguments.cold);
+    let hash = grid.hash(&document, &mesh);
     let table = Table::open(&folder, (&document, &grid, &hash), columns, arguments.fresh)?;
     let blocks: Vec<_> = grid.blocks(block).filter(|points| !table.has_all(points)).collect();
     let open: usize = blocks.iter().map(Range::len).sum();
@@ -108,7 +108,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
                 return Ok(());
             }
             let count = points.len() as u64;
-            let (rows, failures) = solve_block(&document, &grid, &header, points, arguments.cold);
+            let (rows, failures) = solve_block(&document, &grid, &header, points);
             progress.inc(count);
             table.lock().unwrap_or_else(PoisonError::into_inner).append(rows, failures)
         })
@@ -190,20 +190,13 @@ fn solve_block(
     grid: &Grid,
     header: &[Column],
     points: Range<usize>,
-    cold: bool,
 ) -> Solved {
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
-    let (mut neighbour, mut kept) = (None, Kept::default());
+    let mut kept = Kept::default();
     for point in points {
-        match point::solve(document, grid, (point, header), neighbour.as_deref(), &mut kept) {
-            Ok(solved) => {
-                rows.push(solved.row);
-                neighbour = if cold { None } else { solved.start_for_neighbour };
-            }
-            Err(message) => {
-                failures.push((point, message));
-                neighbour = None;
-            }
+        match point::solve(document, grid, (point, header), &mut kept) {
+            Ok(row) => rows.push(row),
+            Err(message) => failures.push((point, message)),
         }
     }
     (rows, failures)

@@ -19,20 +19,13 @@ use nalgebra::SVector;
 use std::collections::BTreeSet;
 use std::error::Error;
 
-pub struct Solved {
-    pub row: Vec<f64>,
-    /// `None` where the position is one of many and a neighbour should look for its own.
-    pub start_for_neighbour: Option<Vec<SVector<f64, 5>>>,
-}
-
-/// A point's scene solved, from a neighbour's solution or, in housings, with a neighbour's housings.
+/// Row of a point. In housings, those of the point before are taken again.
 pub fn solve(
     document: &Document,
     grid: &Grid,
     (point, header): (usize, &[Column]),
-    neighbour: Option<&[SVector<f64, 5>]>,
     kept: &mut Kept,
-) -> Result<Solved, String> {
+) -> Result<Vec<f64>, String> {
     let scene = grid.scene(document, point).map_err(|error| error.to_string())?;
     // A race beside the middle of its bearing, or one that moves, makes an assembly of a bearing alone.
     if columns(grid, Some(&scene)) != header {
@@ -40,34 +33,22 @@ pub fn solve(
                     sweep what has one kind of results by itself"
             .into());
     }
-    let solved = solve_scene(&scene, neighbour, kept).map_err(|error| error.to_string())?;
-    let row = [start_of_row(grid, point), solved.row].concat();
+    let solved = solve_scene(&scene, kept).map_err(|error| error.to_string())?;
+    let row = [start_of_row(grid, point), solved].concat();
     match row.iter().position(|value| !value.is_finite()) {
-        None => Ok(Solved { row, ..solved }),
+        None => Ok(row),
         Some(column) => Err(format!("{} is not finite", header[column].name)),
     }
 }
 
-fn solve_scene(
-    scene: &AssemblyScene,
-    neighbour: Option<&[SVector<f64, 5>]>,
-    kept: &mut Kept,
-) -> Result<Solved, Box<dyn Error>> {
+fn solve_scene(scene: &AssemblyScene, kept: &mut Kept) -> Result<Vec<f64>, Box<dyn Error>> {
     scene.check_smooth()?;
     *kept = std::mem::take(kept).take(scene)?;
     let (housings, bores) = kept.parts();
     let lists = Lists::of(scene);
-    let found = |near| equilibrium(&lists, grown(housings, bores), near);
-    let Equilibrium { still, moment, .. } = match found(neighbour) {
-        // A neighbour may be far from where bodies are here: its shaft has another centre of mass, its race another place.
-        Err(_) if neighbour.is_some() => found(None)?,
-        found => found?,
-    };
+    let Equilibrium { still, moment, .. } = equilibrium(&lists, grown(housings, bores), None)?;
     let solution = moment.solution;
     let mut warnings = of_equilibrium(scene, &still, &solution)?;
-    let determinate = solution.determinacy == Determinacy::Determinate;
-    let start_for_neighbour =
-        (determinate && housings.is_empty()).then(|| solution.coordinates.clone());
     let (of_housings, said) = kept.row(&solution.seats);
     warnings.extend(said);
     let mut row = match scene.one_still() {
@@ -76,7 +57,7 @@ fn solve_scene(
     };
     row.extend(of_housings);
     row.push(codes(&warnings));
-    Ok(Solved { row, start_for_neighbour })
+    Ok(row)
 }
 
 /// Codes of warnings as one number, two digits each: 305 for W03 and W05. The first seven, which a number of a table holds exactly.
@@ -106,6 +87,10 @@ const RESULTS: [(&str, &str); 17] = [
     ("free_directions", "1"),
 ];
 
+/// Force of the balls on the inner race of each bearing of an assembly.
+const FORCES: [(&str, &str); 3] =
+    [("force_on_inner_x", "N"), ("force_on_inner_y", "N"), ("force_on_inner_z", "N")];
+
 /// Header of the table: point, varied keys, positions and results.
 pub fn columns(grid: &Grid, scene: Option<&AssemblyScene>) -> Vec<Column> {
     let mut columns = start_of_columns(grid);
@@ -130,7 +115,7 @@ pub fn start_of_columns(grid: &Grid) -> Vec<Column> {
     std::iter::once(Column::new("point", "1")).chain(keys).collect()
 }
 
-/// Of each body that loads may move position and what holds it, of each bearing how its balls are loaded.
+/// Position, loads and stiffness of each loaded body; force and loads of the balls of each bearing.
 fn assembly_columns(scene: &AssemblyScene) -> Vec<Column> {
     let mut columns = Vec::new();
     let Ok(still) = scene.statics() else { return columns };
@@ -140,11 +125,14 @@ fn assembly_columns(scene: &AssemblyScene) -> Vec<Column> {
             let unit = if i < 3 { "um" } else { "deg" };
             columns.push(Column::new(format!("{name}_{coordinate}"), unit));
         }
-        let loads = RESULTS[..5].iter();
-        columns.extend(loads.map(|(load, unit)| Column::new(format!("{name}_{load}"), *unit)));
+        // Loads, then the stiffness of the body with all others fixed.
+        let results = RESULTS[..10].iter();
+        columns.extend(results.map(|(load, unit)| Column::new(format!("{name}_{load}"), *unit)));
     }
     for placed in &scene.bearings {
         let prefix = placed.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
+        let force = FORCES.iter();
+        columns.extend(force.map(|(of, unit)| Column::new(format!("{prefix}{of}"), *unit)));
         let of_balls = RESULTS[10..16].iter();
         columns.extend(of_balls.map(|(of, unit)| Column::new(format!("{prefix}{of}"), *unit)));
     }
@@ -153,16 +141,19 @@ fn assembly_columns(scene: &AssemblyScene) -> Vec<Column> {
     columns
 }
 
-/// Position and loads of bodies, and the balls of each bearing, in the order of [`assembly_columns`].
+/// Position, loads and stiffness of bodies, and the balls of each bearing, in the order of [`assembly_columns`].
 fn of_assembly(still: &StaticAssembly, solution: &AssemblySolution) -> Vec<f64> {
     let mut row = Vec::new();
-    for (index, body) in still.bodies.iter().enumerate() {
-        if matches!(body.place, Place::Loaded(_)) {
-            row.extend(position(&solution.coordinates[index]));
-            row.extend(solution.loads[index].iter());
-        }
+    let bodies = still.bodies.iter().enumerate();
+    let loaded = bodies.filter(|(_, body)| matches!(body.place, Place::Loaded(_)));
+    for (place, (index, _)) in loaded.enumerate() {
+        row.extend(position(&solution.coordinates[index]));
+        row.extend(solution.loads[index].iter());
+        row.extend((0..5).map(|i| solution.stiffness[(5 * place + i, 5 * place + i)]));
     }
     for bearing in &solution.bearings {
+        let [force, _] = &bearing.forces;
+        row.extend(force.iter());
         row.extend(of_balls(&bearing.balls));
     }
     row.push(free_directions(&solution.determinacy));

@@ -31,9 +31,6 @@ pub fn run(
     interrupted: &AtomicBool,
 ) -> CommandResult {
     let start = Instant::now();
-    if arguments.cold {
-        return Err("--cold applies to statics; each run starts by itself".into());
-    }
     let subject = |point| -> Result<Subject, Box<dyn Error>> {
         let document = grid.document(document, point)?;
         let subject = resolve_subject(&document)?;
@@ -48,7 +45,7 @@ pub fn run(
         Err(_) => Vec::new(),
     };
     let mesh: Vec<u8> = meshes.into_iter().flat_map(|(_, content)| content).collect();
-    let hash = grid.hash(document, &mesh, false);
+    let hash = grid.hash(document, &mesh);
     let of = ("runs", hash.as_str());
     if table::earlier(&folder, of, arguments.fresh)?.is_none() && remove_points(&folder)? {
         print(&format!("the earlier results in {} are replaced\n", folder.display()))?;

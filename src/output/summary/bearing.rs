@@ -174,6 +174,17 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
             section.insert(format!("{name}_slip"), quantity("slip", slip, "1")?);
         }
     }
+    let lines = table.defect_lines();
+    let own = lines.iter().filter(|of| of.prefix == prefix).flat_map(|of| &of.lines);
+    for line in own.filter(|line| line.order == 1) {
+        let key = match line.name.rsplit(' ').next() {
+            Some("BPFO") => "ball_pass_outer_frequency",
+            Some("BPFI") => "ball_pass_inner_frequency",
+            Some("BSF") => "ball_spin_frequency",
+            _ => continue,
+        };
+        section.insert(key.into(), quantity(key, line.frequency, "Hz")?);
+    }
     if let Some(whirl) = cage_whirl(table, &prefix) {
         section.insert("cage_mean_distance".into(), quantity("distance", whirl.distance, "m")?);
         section.insert("cage_whirl_turns".into(), quantity("turns", whirl.turns, "1")?);

@@ -52,7 +52,7 @@ pub fn write_run_results(
     table: &RunTable,
     spectra: &[(String, Spectrum)],
     report: &RunReport,
-) -> Result<Vec<PathBuf>, ResultsError> {
+) -> Result<(Vec<PathBuf>, Value), ResultsError> {
     let summary = run_summary(session, table, spectra, report)?;
     let [csv, npy, json] = ["series.csv", SERIES, "summary.json"].map(|name| folder.join(name));
     match session.motion {
@@ -71,7 +71,7 @@ pub fn write_run_results(
     }
     write_atomic(&json, pretty(&summary).as_bytes())?;
     written.push(json);
-    Ok(written)
+    Ok((written, summary))
 }
 
 fn readable_times(table: &RunTable) -> Result<Series, ResultsError> {

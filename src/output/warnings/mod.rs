@@ -54,6 +54,7 @@ pub enum WarningCode {
     ExcitationFasterThanFit,
     BeyondKeptModes,
     WhirlUnstable,
+    PictureNotDrawn,
 }
 
 impl WarningCode {
@@ -81,7 +82,7 @@ pub struct Entry {
     pub action: &'static str,
 }
 
-pub const TABLE: [Entry; 17] = [
+pub const TABLE: [Entry; 18] = [
     Entry {
         name: "W01-indeterminate-position",
         title: "Position not determined",
@@ -94,7 +95,9 @@ pub const TABLE: [Entry; 17] = [
         title: "Unstable equilibrium left",
         meaning: "The first equilibrium found was a saddle point of the energy, and the search went on to a stable one next to it. The mirror \
                   image of the result is an equilibrium too.",
-        action: "If the sign of the displacement matters, add a small load that selects one side.",
+        action: "A race under radial load buckles to one side if its tilts are free: where shaft and housing keep it upright, \
+                 fix them (`tilt_y = { tilt = \"0 deg\" }`, `tilt_z` likewise). If the sign of the displacement \
+                 matters, add a small load that selects one side.",
     },
     Entry {
         name: "W03-pressure-above-rating",
@@ -198,5 +201,11 @@ pub const TABLE: [Entry; 17] = [
         title: "Unstable whirl",
         meaning: "A whirl mode has negative damping at the top speed and grows, usually by internal damping above a critical speed.",
         action: "Reduce the speed or the internal damping, or add damping that does not rotate.",
+    },
+    Entry {
+        name: "W18-picture-not-drawn",
+        title: "Picture not drawn",
+        meaning: "A picture varies the scene's positions or tilts, and found no equilibrium at one of them. All results are written.",
+        action: "Take the picture out of `output.plots`, or fix coordinates that no load determines.",
     },
 ];

@@ -18,8 +18,10 @@ use crate::solids::model::SolidModel;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
-/// Largest difference of the bore from the race, and its eccentricity, as a fraction of the race's radius.
+/// Largest eccentricity of the bore as a fraction of its radius.
 const FAR_OFF: f64 = 0.05;
+/// Largest difference of the bore from the race as a fraction of the radius.
+const LARGEST_FIT: f64 = 0.01;
 /// Out-of-roundness as a fraction of an interference below which pressures change by no more than that fraction.
 const SMALL: f64 = 0.01;
 
@@ -42,6 +44,8 @@ pub struct HousingSetup {
     pub notes: Vec<String>,
     /// Radial interference, m; negative for clearance.
     pub interference: f64,
+    /// Radius of the race in the scene where the fit does not follow from it, m.
+    pub race_radius: Option<f64>,
     /// Width of the outer race, m.
     pub width: f64,
     /// Nominal pose of the outer race.
@@ -100,7 +104,7 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let groove = sizes.outer_race.radius;
     let race = given.unwrap_or(1.1 * groove);
     let near = match given {
-        Some(given) => (size - given).abs() <= FAR_OFF * given,
+        Some(given) => (size - given).abs() <= LARGEST_FIT * given,
         // Any wall behind the groove.
         None => size > groove && size < 2.0 * groove,
     };
@@ -141,7 +145,7 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         FitSize::Interference(interference) => interference,
         FitSize::OuterRadius(race) => race - radius,
     };
-    let limit = 0.01 * radius;
+    let limit = LARGEST_FIT * radius;
     let fits = interference <= limit;
     if !fits {
         return Err(HousingSetupError::FitTooLarge { interference, limit });
@@ -163,6 +167,10 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         caution: caution(off, interference, scene.housing.penalty),
         notes,
         interference,
+        race_radius: match scene.housing.fit {
+            FitSize::Interference(_) => sizes.outer_radius,
+            FitSize::OuterRadius(_) => None,
+        },
         width,
         nominal,
     })

@@ -212,7 +212,7 @@ fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
 
 /// Refuses keys of runs, plots and sweeps without effect on a solid.
 fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
-    const SHARED: [&str; 11] = [
+    const SHARED: [&str; 12] = [
         "base",
         "without",
         "title",
@@ -224,6 +224,7 @@ fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
         "numerics.energy_limit",
         "output.plots",
         "sweep.of",
+        "sweep.together",
     ];
     const OWN: [&str; 4] = ["solid.", "modes.", "numerics.method", "numerics.fields_interval"];
     let reason = "a solid does not use it";

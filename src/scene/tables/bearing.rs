@@ -241,6 +241,8 @@ pub(crate) const KEYS: &[Key] = &[
         "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt`, in a housing `load-zone` only. A run draws `polar` and the others; a quasi-static sequence has no `polar`, `slip-spin` and `run-up`. `run-up` shows the radial displacement of each part with changing speed over that speed."),
     Key::new("sweep.of", Kind::Choice(&["statics", "runs"]), Default { value: "statics", reason: "the loads at t = 0" },
         "Results at each point: the equilibrium, or a run in a folder of its own."),
+    Key::new("sweep.together", Kind::Boolean, Default { value: "false", reason: "every combination of the values" },
+        "True to vary all keys together, value by value; each then has as many values."),
 ];
 
 const MATERIAL_EXAMPLE: &str =

@@ -105,7 +105,7 @@ impl Document {
         base.assumptions.extend(self.assumptions);
         if self.layer.tables.iter().any(|(table, _)| *table == "sweep") {
             base.sweep = self.sweep;
-            if let Some((row, _)) = keys::find("sweep.of") {
+            for (row, _) in ["sweep.of", "sweep.together"].into_iter().filter_map(keys::find) {
                 base.layer.given[row] = self.layer.given[row].clone();
             }
         }

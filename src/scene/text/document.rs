@@ -286,7 +286,8 @@ impl Document {
         self.layer.given[row].as_ref().and_then(|given| given.offset)
     }
 
-    /// Replaces or adds one key, as `--vary` and `[sweep]` do: `set("bearing.clearance.radial", "5 um")`.
+    /// Replaces or adds one key, as `--set` does: `set("bearing.clearance.radial", "5 um")`,
+    /// `set("output.plots", "[]")`.
     ///
     /// Removes keys that exclude it (the diametral clearance, the displacement of a coordinate with a
     /// load) and returns those that the scene had.
@@ -296,7 +297,11 @@ impl Document {
     pub fn set(&mut self, path: &str, text: &str) -> Result<Vec<&'static str>, SceneError> {
         let leads = self.row(path)?;
         let Leads { row, key, name, item } = leads;
-        let value = value::check_bare(key, text)
+        let checked = match tree::composite_value(text) {
+            Some(value) => value::check(key, &Node { value, offset: 0 }).map_err(|e| e.problem),
+            None => value::check_bare(key, text),
+        };
+        let value = checked
             .map_err(|problem| SceneError::new(Place::file(&self.source.name), path, problem))?;
         let given = Given { value, offset: None, named: name.is_some() };
         Ok(match (item, name) {
@@ -379,6 +384,11 @@ impl Document {
     /// True if `[sweep]` is of runs instead of statics.
     pub fn sweeps_runs(&self) -> bool {
         matches!(self.value("sweep.of"), Some(Checked::Choice("runs")))
+    }
+
+    /// True if the keys of `[sweep]` vary together, value by value.
+    pub fn sweeps_together(&self) -> bool {
+        matches!(self.value("sweep.together"), Some(Checked::Boolean(true)))
     }
 
     pub fn is_given(&self, path: &str) -> bool {

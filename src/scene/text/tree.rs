@@ -66,6 +66,13 @@ fn parse_toml(source: &Source) -> Result<Vec<Entry>, SceneError> {
     Ok(toml_entries(table.into_inner()))
 }
 
+/// A list or profile written as one TOML value; `None` for other text.
+pub fn composite_value(text: &str) -> Option<Value> {
+    let line = format!("value = {text}");
+    let table = text.starts_with(['[', '{']).then(|| DeTable::parse(&line).ok())??;
+    toml_entries(table.into_inner()).pop().map(|entry| entry.node.value)
+}
+
 /// The bare or quoted key that begins at `offset`.
 fn key_at(text: &str, offset: usize) -> &str {
     let rest = text.get(offset..).unwrap_or_default();
