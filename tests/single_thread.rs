@@ -13,7 +13,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// A slewing ring with so many balls that a solution and its plots take tens of milliseconds.
-const LARGE: &str = r#"[bearing]
+const LARGE: &str = r#"defaults = "dissertation"
+[bearing]
 kind = "deep-groove"
 balls = 190
 clearance = { radial = "2 um" }

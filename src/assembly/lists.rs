@@ -138,6 +138,8 @@ pub struct Bearing {
     pub slices: usize,
     /// Points across each slice.
     pub points_across: usize,
+    /// Differential sliding of a ball in its groove (Heathcote).
+    pub differential_sliding: bool,
     pub damping: ContactDamping,
     /// Contact between neighbouring balls; without it interpenetrating balls end the run.
     pub ball_contact: Option<BallContactLaw>,
@@ -416,6 +418,7 @@ impl From<&DynamicProblem> for Assembly {
             traction: problem.traction.clone(),
             slices: problem.slices,
             points_across: problem.points_across,
+            differential_sliding: problem.differential_sliding,
             damping: problem.damping,
             ball_contact: problem.ball_contact,
             raceway_profiles: problem.raceway_profiles.clone(),

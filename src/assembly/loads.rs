@@ -99,6 +99,8 @@ pub struct DynamicProblem {
     pub slices: usize,
     /// Points across each slice.
     pub points_across: usize,
+    /// Differential sliding of a ball in its groove (Heathcote).
+    pub differential_sliding: bool,
     pub damping: ContactDamping,
     /// Contact between neighbouring balls; without it interpenetrating balls end the run.
     pub ball_contact: Option<BallContactLaw>,

@@ -88,6 +88,7 @@ pub fn through(part: ClearanceThrough) -> &'static str {
         ClearanceThrough::Ball => "ball",
         ClearanceThrough::InnerRace => "inner-race",
         ClearanceThrough::OuterRace => "outer-race",
+        ClearanceThrough::Races => "races",
     }
 }
 

@@ -254,6 +254,7 @@ fn traction(problem: &DynamicProblem) -> Echo {
         "law": law,
         "slices": problem.slices,
         "points_across": problem.points_across,
+        "differential_sliding": problem.differential_sliding,
     }))
 }
 

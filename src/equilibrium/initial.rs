@@ -13,6 +13,7 @@ use crate::equilibrium::sections;
 use crate::equilibrium::statics::{
     AssemblySolution, Condition, StaticOptions, StaticsError, solve_assembly,
 };
+use crate::members::connection::Connection;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::motion::validity::FARTHEST;
@@ -163,7 +164,7 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
     let mut still = StaticAssembly {
         bodies: bodies.collect(),
         bearings: bearings.collect(),
-        connections: assembly.connections.clone(),
+        connections: assembly.connections.iter().map(Connection::conservative).collect(),
         ..StaticAssembly::default()
     };
     sections::add(assembly, t, &mut still);

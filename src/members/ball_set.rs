@@ -70,7 +70,15 @@ pub struct ContactForces<'e> {
     pub modes: Option<([&'e [f64]; 2], &'e mut [f64])>,
 }
 
-fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64, outward: f64) -> RaceLaw {
+fn race_law(
+    raceway: &Raceway,
+    hertz: &HertzContact,
+    ball_radius: f64,
+    outward: f64,
+    differential_sliding: bool,
+) -> RaceLaw {
+    // Both surfaces yield alike: the radius of the pressed one is 2 r_b r_g/(r_b + r_g).
+    let curving = 0.25 * (1.0 / ball_radius + 1.0 / raceway.groove_radius);
     // a ∝ W^(1/3) and W = K δ^(3/2), so a = a(K)·√δ.
     RaceLaw {
         centre_axial: raceway.centre_axial,
@@ -79,6 +87,7 @@ fn race_law(raceway: &Raceway, hertz: &HertzContact, ball_radius: f64, outward: 
         stiffness: hertz.stiffness,
         semi_major_factor: contact_ellipse(hertz, hertz.stiffness).semi_major,
         ellipticity: hertz.ellipticity,
+        curving: if differential_sliding { curving } else { 0.0 },
         outward,
     }
 }
@@ -98,14 +107,17 @@ impl BallSet {
         };
         let [slices, across] =
             if steps.traction { [bearing.slices, bearing.points_across] } else { [1, 1] };
+        let mut slices = Slices::new(slices, across);
+        let curved = steps.traction && bearing.differential_sliding;
+        slices.across |= curved;
         let laws = ContactLaws {
             races: [
-                race_law(&geometry.inner, &bearing.inner_contact, radius, -1.0),
-                race_law(&geometry.outer, &bearing.outer_contact, radius, 1.0),
+                race_law(&geometry.inner, &bearing.inner_contact, radius, -1.0, curved),
+                race_law(&geometry.outer, &bearing.outer_contact, radius, 1.0, curved),
             ],
             ball_radius: radius,
             traction: bearing.traction.clone(),
-            slices: Slices::new(slices, across),
+            slices,
             raceway_profiles,
         };
         let damping = match bearing.damping {

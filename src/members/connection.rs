@@ -36,11 +36,34 @@ pub struct SpringDashpot {
     pub stiffness: [f64; 6],
     /// N·s/m, N·m·s/rad.
     pub damping: [f64; 6],
+    pub cross: CrossCoupling,
     pub maxwell: Vec<MaxwellElement>,
     /// Unloaded position of the second end in the axes of the first, m.
     pub rest: Vec3,
     /// Wall thickness of a bushing, m; limit of the lateral displacement of its sleeves.
     pub wall: Option<f64>,
+}
+
+/// Coupling of the lateral displacements y and z, as of journal bearings and seals: F_y = −k_yz z − c_yz ż,
+/// F_z = −k_zy y − c_zy ẏ. The mean of both stiffnesses stores energy; their difference is circulatory.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CrossCoupling {
+    /// k_yz, k_zy, N/m.
+    pub stiffness: [f64; 2],
+    /// c_yz, c_zy, N·s/m.
+    pub damping: [f64; 2],
+}
+
+impl CrossCoupling {
+    /// Mean and half difference of the stiffnesses, N/m.
+    pub fn parts(&self) -> [f64; 2] {
+        let [yz, zy] = self.stiffness;
+        [0.5 * (yz + zy), 0.5 * (yz - zy)]
+    }
+
+    fn is_void(&self) -> bool {
+        *self == CrossCoupling::default()
+    }
 }
 
 /// Six springs, each in series with a dashpot: force K e, where the elongation e (m, rad) follows the displacement q by
@@ -70,7 +93,7 @@ pub struct SpringForces {
     pub on: [Wrench; 2],
     /// Stored, J.
     pub energy: f64,
-    /// Power of its dashpots, W, ≤ 0.
+    /// Power of its dashpots, W, ≤ 0, and of circulatory forces, of either sign.
     pub loss: f64,
     /// Rates of the six displacements, m/s and rad/s, for Maxwell elements.
     pub rates: [f64; 6],
@@ -140,6 +163,24 @@ impl Connection {
         }
     }
 
+    /// The connection in an equilibrium: without circulatory forces, which no energy has.
+    pub fn conservative(&self) -> Connection {
+        let mut all = self.clone();
+        if let Law::SpringDashpot(law) = &mut all.law {
+            let [mean, _] = law.cross.parts();
+            law.cross.stiffness = [mean; 2];
+        }
+        all
+    }
+
+    /// Coupling of its lateral displacements; `None` without any.
+    pub fn cross(&self) -> Option<&CrossCoupling> {
+        match &self.law {
+            Law::SpringDashpot(law) => Some(&law.cross).filter(|cross| !cross.is_void()),
+            Law::Torsion(_) => None,
+        }
+    }
+
     /// Its Maxwell elements.
     pub fn maxwell(&self) -> &[MaxwellElement] {
         match &self.law {
@@ -153,8 +194,11 @@ impl Connection {
         match &self.law {
             Law::SpringDashpot(law) => {
                 let mut elements = law.maxwell.iter();
+                let [[k_yz, k_zy], [c_yz, c_zy]] = [law.cross.stiffness, law.cross.damping];
                 uneven(&law.stiffness)
                     || uneven(&law.damping)
+                    || k_yz != -k_zy
+                    || c_yz != -c_zy
                     || elements.any(|element| uneven(&element.stiffness))
             }
             Law::Torsion(_) => false,
@@ -166,7 +210,8 @@ impl Connection {
         match &self.law {
             Law::SpringDashpot(law) => {
                 let pushes = law.maxwell.iter().any(|element| element.stiffness != [0.0; 6]);
-                law.stiffness == [0.0; 6] && law.damping == [0.0; 6] && !pushes
+                let springs = law.stiffness != [0.0; 6] || law.damping != [0.0; 6];
+                !springs && law.cross.is_void() && !pushes
             }
             Law::Torsion(law) => law.stiffness == 0.0 && law.damping == 0.0,
         }
@@ -243,6 +288,10 @@ pub fn spring_dashpot(
         pull.loss -= dashpot * speed[i] + law.damping[3 + i] * turned[i] * turned[i];
         (pull.rates[i], pull.rates[3 + i]) = (speed[i], turned[i]);
     }
+    if !law.cross.is_void() {
+        let [y, z] = [1, 2].map(|i| dot(axes[i], arm) - law.rest[i]);
+        add_cross(&law.cross, [y, z], [speed[1], speed[2]], &mut force, &mut pull);
+    }
     for (element, by) in law.maxwell.iter().zip(elongated.as_chunks::<6>().0) {
         for i in 0..3 {
             let tension = [i, 3 + i].map(|k| element.stiffness[k] * by[k]);
@@ -262,6 +311,21 @@ pub fn spring_dashpot(
     pull.on[1] = Wrench { force, moment };
     pull.on[0] = Wrench { force: back(force), moment: back(add(moment, cross(arm, force))) };
     pull
+}
+
+fn add_cross(
+    cross: &CrossCoupling,
+    [y, z]: [f64; 2],
+    [y_rate, z_rate]: [f64; 2],
+    force: &mut Vec3,
+    pull: &mut SpringForces,
+) {
+    let [[k_yz, k_zy], [c_yz, c_zy]] = [cross.stiffness, cross.damping];
+    let [mean, odd] = cross.parts();
+    force[1] -= k_yz * z + c_yz * z_rate;
+    force[2] -= k_zy * y + c_zy * y_rate;
+    pull.energy += mean * y * z;
+    pull.loss -= odd * (z * y_rate - y * z_rate) + (c_yz + c_zy) * y_rate * z_rate;
 }
 
 fn spring_dashpot_rows(law: &SpringDashpot, ends: [&BodyKinematics; 2]) -> [Row; ROWS] {

@@ -40,7 +40,7 @@ fn lever(laws: &ContactLaws, overlap: f64) -> f64 {
 fn patch(laws: &ContactLaws, race: usize, overlap: f64) -> Patch {
     let semi_major = laws.races[race].semi_major_factor * overlap.sqrt();
     let semi_minor = semi_major / laws.races[race].ellipticity;
-    Patch { semi_major, semi_minor }
+    Patch { semi_major, semi_minor, curving: laws.races[race].curving }
 }
 
 fn sliding_of(
@@ -154,7 +154,7 @@ fn lanes_of<const SLOPES: bool>(
     let ContactTable { contact, load, traction, sliding, slope, active, .. } = table;
     for block in active.chunks(LANES) {
         let mut slip = [[0.0; LANES]; 2];
-        let mut spin = [0.0; LANES];
+        let mut spin = [[0.0; LANES]; 3];
         let mut patches = Patches::default();
         // Values of the law that depend on the entrainment speed; lanes without a pair do not slide.
         let mut rolling = [1.0; LANES];
@@ -163,7 +163,9 @@ fn lanes_of<const SLOPES: bool>(
             let here = sliding_of(laws, layout, state, &motions, &axes, pair, &contact[pair]);
             slip[0][l] = here.slip[0];
             slip[1][l] = here.slip[1];
-            spin[l] = here.relative_spin[2];
+            for (axis, of_axis) in spin.iter_mut().enumerate() {
+                of_axis[l] = here.relative_spin[axis];
+            }
             rolling[l] = prepare(here.entrainment);
             patches.put(l, laws.slices.across, patch(laws, race, contact[pair].overlap));
             sliding[pair] = here;
@@ -189,6 +191,7 @@ fn lanes_of<const SLOPES: bool>(
 struct Patches {
     semi_major: [f64; LANES],
     semi_minor: [f64; LANES],
+    curving: [f64; LANES],
 }
 
 impl Patches {
@@ -198,12 +201,17 @@ impl Patches {
         // A division needed only by points beside the middle of a slice.
         if across {
             self.semi_minor[lane] = patch.semi_minor;
+            self.curving[lane] = patch.curving;
         }
     }
 
     #[inline(always)]
     fn at(&self, lane: usize) -> Patch {
-        Patch { semi_major: self.semi_major[lane], semi_minor: self.semi_minor[lane] }
+        Patch {
+            semi_major: self.semi_major[lane],
+            semi_minor: self.semi_minor[lane],
+            curving: self.curving[lane],
+        }
     }
 }
 
@@ -212,7 +220,7 @@ impl Patches {
 fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
     laws: &ContactLaws,
     slip: &[[f64; LANES]; 2],
-    spin: &[f64; LANES],
+    spin: &[[f64; LANES]; 3],
     patches: &Patches,
     prepared: &[f64; LANES],
     (friction, slopes): (
@@ -224,6 +232,8 @@ fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
     let mut rolling = [0.0; LANES];
     let mut transverse = [0.0; LANES];
     let mut moment = [0.0; LANES];
+    let mut moment_t = [0.0; LANES];
+    let mut moment_s = [0.0; LANES];
     let mut power = [0.0; LANES];
     let mut tt = [0.0; LANES];
     let mut ts = [0.0; LANES];
@@ -238,20 +248,25 @@ fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
                 rolling: rolling[l],
                 transverse: transverse[l],
                 moment: moment[l],
+                moment_t: moment_t[l],
+                moment_s: moment_s[l],
                 power: power[l],
             };
+            let spins = [spin[0][l], spin[1][l], spin[2][l]];
             let here = [slip[0][l], slip[1][l]];
             let friction = |square, share| friction(square, share, prepared[l]);
-            let after = add_slice::<ACROSS>(&before, here, spin[l], point, share, friction);
+            let after = add_slice::<ACROSS>(&before, here, spins, point, share, friction);
             rolling[l] = after.rolling;
             transverse[l] = after.transverse;
             moment[l] = after.moment;
+            moment_t[l] = after.moment_t;
+            moment_s[l] = after.moment_s;
             power[l] = after.power;
             if SLOPES {
                 let before = [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]];
                 let slopes = |square, share| slopes(square, share, prepared[l]);
                 [tt[l], ts[l], tn[l], ss[l], sn[l], nn[l]] =
-                    add_slope::<ACROSS>(&before, here, spin[l], point, share, slopes);
+                    add_slope::<ACROSS>(&before, here, spins, point, share, slopes);
             }
         }
     }
@@ -261,6 +276,8 @@ fn slice_lanes<const SLOPES: bool, const ACROSS: bool>(
             rolling: rolling[l],
             transverse: transverse[l],
             moment: moment[l],
+            moment_t: moment_t[l],
+            moment_s: moment_s[l],
             power: power[l],
         };
     }

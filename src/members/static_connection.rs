@@ -50,6 +50,12 @@ impl<'m> Joined<'m> {
         }
     }
 
+    /// Adds the coefficients of y by z and of z by y.
+    fn add_cross(&self, rows: &[Row], [yz, zy]: [f64; 2], to: &mut DMatrix<f64>) {
+        self.add_product([&rows[1], &rows[2]], yz, to);
+        self.add_product([&rows[2], &rows[1]], zy, to);
+    }
+
     /// Adds the product of two rows, times `size`.
     fn add_product(&self, rows: [&Row; 2], size: f64, to: &mut DMatrix<f64>) {
         let levers =
@@ -76,7 +82,21 @@ pub(crate) fn add_connection(model: &Model, connection: &Connection, here: &mut 
         let mut rows = here.gradient.fixed_rows_mut::<5>(first);
         rows -= joined.conjugate(end, loads.force, loads.moment);
     }
-    joined.add_rows(&connection.rows(ends), |row| row.stiffness, &mut here.stiffness);
+    let rows = connection.rows(ends);
+    joined.add_rows(&rows, |row| row.stiffness, &mut here.stiffness);
+    if let Some(cross) = connection.cross() {
+        joined.add_cross(&rows, cross.stiffness, &mut here.stiffness);
+    }
+}
+
+/// Adds the circulatory part of its cross-coupled stiffness, and none of the rest.
+pub(crate) fn add_circulatory(model: &Model, connection: &Connection, here: &mut Evaluation) {
+    if let Some(cross) = connection.cross() {
+        let joined = Joined::new(model, connection, here);
+        let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);
+        let [_, odd] = cross.parts();
+        joined.add_cross(&rows, [odd, -odd], &mut here.stiffness);
+    }
 }
 
 /// Adds the circulation of its dashpots that rotate with the first body, of spin `spin` (per rad/s of the reference
@@ -125,4 +145,7 @@ pub(crate) fn add_damping(model: &Model, connection: &Connection, here: &mut Eva
     let joined = Joined::new(model, connection, here);
     let rows = connection.rows([&joined.ends[0], &joined.ends[1]]);
     joined.add_rows(&rows, |row| row.damping, &mut here.stiffness);
+    if let Some(cross) = connection.cross() {
+        joined.add_cross(&rows, cross.damping, &mut here.stiffness);
+    }
 }

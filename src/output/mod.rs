@@ -48,6 +48,7 @@ pub mod pictures;
 pub mod plots;
 pub mod recorder;
 pub mod results;
+pub mod run_up;
 pub mod series;
 pub mod session;
 pub mod spectrum;

@@ -15,7 +15,9 @@ use crate::equilibrium::statics::AssemblySolution;
 use crate::members::beam::STATION;
 use crate::members::connection::{Connection, MaxwellElement};
 use crate::members::flexible_shaft::ElasticShaft;
-use crate::members::static_connection::{add_circulation, add_damping, levers, spin_of};
+use crate::members::static_connection::{
+    add_circulation, add_circulatory, add_damping, levers, spin_of,
+};
 use crate::members::static_shaft::{Moved, onto_unknowns, rows_onto_unknowns, sections};
 use crate::vibrations::critical_speeds::Critical;
 use crate::vibrations::quasi_static_limit::{
@@ -105,8 +107,12 @@ pub fn whirling(
         bending(&mut all, shaft, (body.map(|body| 5 * body), first), ratio(shaft.body));
     }
     // The model's connections are between sections of flexible bodies; the assembly's name the body that rotates.
+    // Equilibria are without circulatory forces.
+    let whole: Vec<Connection> = assembly.connections.iter().zip(&model.assembly.connections)
+        .map(|(own, placed)| Connection { law: own.law.clone(), ..placed.clone() })
+        .collect();
     let spins = assembly.connections.iter().map(|of| ratio(of.ends[0].body));
-    let spins: Vec<(&Connection, f64)> = model.assembly.connections.iter().zip(spins).collect();
+    let spins: Vec<(&Connection, f64)> = whole.iter().zip(spins).collect();
     if let Some((uneven, _)) = spins.iter().find(|(of, spin)| *spin != 0.0 && of.is_uneven()) {
         return Err(RotorError::Uneven { name: uneven.name.clone() });
     }
@@ -116,6 +122,11 @@ pub fn whirling(
     let mut known_part = all.damping.view_mut((0, 0), (known, known));
     known_part += of_springs;
     add_housings(&mut all.damping, known, housings, |of| of.damping);
+    let of_springs = over_unknowns(&model, &here, &moved, |here| {
+        spins.iter().for_each(|(of, _)| add_circulatory(&model, of, here));
+    });
+    let mut known_part = all.stiffness.view_mut((0, 0), (known, known));
+    known_part += of_springs;
     let of_springs = over_unknowns(&model, &here, &moved, |here| {
         spins.iter().for_each(|&(of, spin)| add_circulation(&model, of, spin, here));
     });

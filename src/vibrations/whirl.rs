@@ -48,7 +48,7 @@ impl Whirl {
         match self.direction {
             d if d > 0.5 => "forward",
             d if d < -0.5 => "backward",
-            _ => "to and fro",
+            _ => "planar",
         }
     }
 }

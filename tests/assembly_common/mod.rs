@@ -3,6 +3,7 @@
 
 /// A bearing of Table 5.3 for either end.
 pub const BEARING: &str = r#"
+defaults = "dissertation"
 [bearing]
 kind = "angular-contact"
 balls = 11

@@ -155,6 +155,7 @@ proptest! {
         problem.outer_start = [1e-6, -2e-6, 1e-6, 1e-4, -2e-4];
         drives.apply(&mut problem);
         problem.points_across = 1 + (seed % 3) as usize;
+        problem.differential_sliding = seed % 2 == 0;
         let t = 0.013;
         let mut system = System::new(problem.clone(), Kernel::Simd);
         let mut state = random_state(&problem, seed);
@@ -261,6 +262,7 @@ proptest! {
     fn both_drivers_have_the_same_bits(choice in any_choice(), seed: u64) {
         let mut problem = choice.problem();
         problem.points_across = 1 + (seed % 3) as usize;
+        problem.differential_sliding = seed % 2 == 0;
         let state = random_state(&problem, seed);
         let of = |driver| {
             let mut system = System::new(problem.clone(), driver);

@@ -400,6 +400,7 @@ fn statics_says_where_a_shaft_bends_too_far_for_small_turns() {
     let with = |thick: &str, tilt_stiffness: &str, moment: &str, load: &str| {
         format!(
             r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8

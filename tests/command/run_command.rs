@@ -15,6 +15,7 @@ pub fn scene(numerics: &str, output: &str) -> String {
     format!(
         r#"
 title = "Run"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8
@@ -283,6 +284,7 @@ fn a_run_that_fails_says_where_and_keeps_its_state() {
 fn cageless(law: &str) -> String {
     format!(
         r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8

@@ -19,6 +19,7 @@ use bearing_dynamics::scene::{CageInRun, Format};
 use run_common::{frictionless, jolted, pressed, rattling, request, simulation};
 
 const BEARING: &str = r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8
@@ -239,7 +240,8 @@ fn a_nominal_start_is_judged_in_equilibrium() {
     let stiffness = axes(["1e5 N/m", "1e5 N/m", "1e5 N/m", "1e3 N m/rad", "1e3 N m/rad"]);
     let damping = axes(["100 N s/m", "20 N s/m", "20 N s/m", "0.1 N m s/rad", "0.1 N m s/rad"]);
     let text = format!(
-        "[bearing]
+        "defaults = \"dissertation\"
+[bearing]
 kind = \"deep-groove\"
 balls = 9
 clearance = {{ radial = \"100 um\" }}

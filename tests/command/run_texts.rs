@@ -92,6 +92,7 @@ fn check_tells_of_the_motion_of_a_run() {
 fn the_largest_pressure_may_be_one_between_balls() {
     let place = Place::new();
     let text = r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 12

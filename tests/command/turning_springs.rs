@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 
 /// A bearing that touches nothing: a scene has one.
 const BEARING: &str = r#"
+defaults = "dissertation"
 [bearing.dummy]
 kind = "deep-groove"
 balls = 8

@@ -119,7 +119,8 @@ pub fn bearing_scenes() -> Vec<String> {
 }
 
 /// The bearing of Table 4.1 without loads and without a title.
-pub const DEEP_GROOVE: &str = r#"[bearing]
+pub const DEEP_GROOVE: &str = r#"defaults = "dissertation"
+[bearing]
 kind = "deep-groove"
 balls = 8
 clearance = { radial = "-5 um" }
@@ -134,7 +135,8 @@ radius = "5.953 mm"
 "#;
 
 /// The bearing of Table 5.3.
-pub const ANGULAR_CONTACT: &str = r#"[bearing]
+pub const ANGULAR_CONTACT: &str = r#"defaults = "dissertation"
+[bearing]
 kind = "angular-contact"
 balls = 11
 pitch_radius = "30 mm"

@@ -58,6 +58,7 @@ pub fn bearing(geometry: BearingGeometry, loads: [f64; 5], speed: f64) -> Dynami
         traction: TractionLaw::None,
         slices: 15,
         points_across: 1,
+        differential_sliding: false,
         damping: ContactDamping::None,
         raceway_profiles: Vec::new(),
         ball_deviations: Vec::new(),

@@ -9,6 +9,7 @@ pub use solids::{
 };
 
 pub const BEARING: &str = r#"title = "A bearing in a ring"
+defaults = "dissertation"
 [assumptions]
 ring = "as coarse as a test needs"
 [bearing]

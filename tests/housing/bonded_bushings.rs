@@ -426,7 +426,8 @@ method = "{method}"
 cells = {{ around = 6, radial = 2, axial = 4 }}"#
         );
         let text = format!(
-            r#"[bearing]
+            r#"defaults = "dissertation"
+[bearing]
 kind = "deep-groove"
 balls = 8
 clearance = {{ radial = "5 um" }}

@@ -37,6 +37,7 @@ pub fn frictionless() -> DynamicProblem {
         traction: TractionLaw::None,
         slices: 15,
         points_across: 1,
+        differential_sliding: false,
         damping: ContactDamping::None,
         raceway_profiles: Vec::new(),
         ball_deviations: Vec::new(),
@@ -98,6 +99,7 @@ pub fn complete() -> DynamicProblem {
         },
         slices: 5,
         points_across: 1,
+        differential_sliding: false,
         damping: ContactDamping::HuntCrossley { alpha: 0.9 },
         unbalance: 1e-4,
         ..frictionless()

@@ -240,6 +240,7 @@ fn a_bearing_elsewhere_the_other_way_round_is_the_one_after_half_a_turn() {
 #[test]
 fn a_named_table_lies_over_the_one_without_a_name() {
     let common = r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8

@@ -24,6 +24,7 @@ fn shipped(name: &str) -> Scene {
 }
 
 pub const BEARING: &str = r#"
+defaults = "dissertation"
 bearing.kind = "deep-groove"
 bearing.balls = 8
 bearing.clearance.radial = "-5 um"

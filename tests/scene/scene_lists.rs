@@ -69,6 +69,7 @@ fn a_number_that_the_list_does_not_have_is_refused() {
 #[test]
 fn a_name_takes_a_common_list_for_its_own() {
     let text = r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8

@@ -3,6 +3,7 @@
 use bearing_dynamics::scene::{Document, Format, resolve_subject};
 
 const BEARINGS: &str = r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8

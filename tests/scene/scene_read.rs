@@ -20,7 +20,7 @@ fn read(text: &str) -> Scene {
 /// Deep-groove scene of Table 4.1 with the given lines inside `[bearing]`.
 fn deep_groove(lines: &str) -> String {
     format!(
-        "[bearing]\nkind = \"deep-groove\"\nballs = 8\n{lines}\n\
+        "defaults = \"dissertation\"\n[bearing]\nkind = \"deep-groove\"\nballs = 8\n{lines}\n\
          inner_race.groove_radius = \"6.013 mm\"\nouter_race.groove_radius = \"6.310 mm\"\n"
     )
 }
@@ -131,6 +131,7 @@ fn the_clearance_changes_the_part_it_goes_through() {
         ("ball", ClearanceThrough::Ball),
         ("inner-race", ClearanceThrough::InnerRace),
         ("outer-race", ClearanceThrough::OuterRace),
+        ("races", ClearanceThrough::Races),
     ] {
         let scene = read(&deep_groove(&format!(
             "inner_race.radius = \"20.047 mm\"\nouter_race.radius = \"31.953 mm\"\n\
@@ -138,7 +139,12 @@ fn the_clearance_changes_the_part_it_goes_through() {
         )));
         let sizes = scene.dimensions;
         assert_eq!(sizes.clearance_through, part);
-        let expected = |through, value, change| value + if part == through { change } else { 0.0 };
+        let both = |through| part == ClearanceThrough::Races && through != ClearanceThrough::Ball;
+        let expected = |through, value, change: f64| match part == through {
+            true => value + change,
+            false if both(through) => value + 0.5 * change,
+            false => value,
+        };
         assert_close(
             scene.geometry.ball_radius,
             expected(ClearanceThrough::Ball, 5.953e-3, -10e-6),
@@ -158,7 +164,7 @@ fn the_clearance_changes_the_part_it_goes_through() {
 
 #[test]
 fn a_clearance_of_an_angular_contact_bearing_is_the_travel_to_contact() {
-    for through in ["ball", "inner-race", "outer-race"] {
+    for through in ["ball", "inner-race", "outer-race", "races"] {
         for clearance in ["20 um", "-20 um"] {
             let text = std::fs::read_to_string(shipped("angular_contact_axial.toml")).unwrap();
             let mut document = Document::read_str(&text, Format::Toml, "test").unwrap();

@@ -6,6 +6,7 @@ use bearing_dynamics::scene::build::shaft::take_shafts;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 
 const BEARINGS: &str = r#"
+defaults = "dissertation"
 [bearing]
 kind = "deep-groove"
 balls = 8

@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 
 /// Ceramic balls, two steels, and an outer race that is moved and tilted about both axes.
 const SCENE: &str = r#"
+defaults = "dissertation"
 [bearing]
 kind = "angular-contact"
 balls = 13

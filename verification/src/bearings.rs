@@ -126,6 +126,10 @@ pub fn oracle(lengths: &Lengths, model: Hertz, ball_phase: f64) -> OracleBearing
         }
         ClearanceThrough::InnerRace => inner[0] -= lengths.clearance,
         ClearanceThrough::OuterRace => outer[0] += lengths.clearance,
+        ClearanceThrough::Races => {
+            inner[0] -= 0.5 * lengths.clearance;
+            outer[0] += 0.5 * lengths.clearance;
+        }
     }
     // Radii of the races along the contact normal at the nominal contact angle.
     let race = [inner[0] / angle.cos() - gi, outer[0] / angle.cos() + go];

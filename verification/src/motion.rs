@@ -77,6 +77,7 @@ pub fn moving(
         traction: TractionLaw::None,
         slices: 15,
         points_across: 1,
+        differential_sliding: false,
         damping: ContactDamping::None,
         raceway_profiles: Vec::new(),
         ball_deviations: Vec::new(),

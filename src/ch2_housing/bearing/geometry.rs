@@ -44,6 +44,8 @@ pub enum ClearanceThrough {
     Ball,
     InnerRace,
     OuterRace,
+    /// Half through each race.
+    Races,
 }
 
 /// Resolved bearing geometry, SI units.
@@ -142,8 +144,8 @@ impl BearingGeometry {
         }
     }
 
-    /// The same bearing with another radial clearance (m), set by the ball radius as in 4.3.1 or by moving one race's
-    /// groove. For an angular-contact bearing the distance of the groove centres is measured along the contact line.
+    /// The same bearing with another radial clearance (m), set by the ball radius as in 4.3.1 or by moving the
+    /// grooves of one race or both. For an angular-contact bearing the distance of the groove centres is measured along the contact line.
     pub fn with_radial_clearance(&self, clearance: f64, through: ClearanceThrough) -> Self {
         let mut changed = *self;
         if clearance == self.radial_clearance {
@@ -160,6 +162,10 @@ impl BearingGeometry {
             }
             ClearanceThrough::InnerRace => changed.inner.centre_radius -= change,
             ClearanceThrough::OuterRace => changed.outer.centre_radius += change,
+            ClearanceThrough::Races => {
+                changed.inner.centre_radius -= 0.5 * change;
+                changed.outer.centre_radius += 0.5 * change;
+            }
         }
         changed
     }

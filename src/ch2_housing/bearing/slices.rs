@@ -3,7 +3,8 @@
 //! The dissertation varies the sliding speed along the major axis only (2.2.1). The ellipse is cut into slices across
 //! this axis. Each slice has its own slip and the share of the normal load given by Hertz's pressure,
 //! q(y) = (3W/4a)(1 − y²/a²); its friction follows from a law of [`traction`](super::traction). As an extension,
-//! several points across a slice also resolve the slip that spin adds along the minor axis.
+//! several points across a slice also resolve the slip that spin adds along the minor axis, and the curvature of the
+//! pressed surfaces the differential sliding of a ball that rolls in a groove (Heathcote).
 //!
 //! The functions are scalar and branch-free, so that they vectorise.
 
@@ -19,7 +20,7 @@ pub struct Slices {
     pub middle: Vec<f64>,
     pub offset: Vec<f64>,
     pub share: Vec<f64>,
-    /// True if a slice has points off the major axis.
+    /// True if points lie off the major axis, or off the tangent plane.
     pub across: bool,
 }
 
@@ -134,12 +135,15 @@ pub fn sliding(
 }
 
 /// Traction summed over the slices per unit of normal load: force on the ball along t and s, moment about n (m), and
-/// dissipated power (m/s).
+/// dissipated power (m/s). Moments about t and s (m) arise where the contact is curved: about s, the rolling resistance
+/// of differential sliding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliceSum {
     pub rolling: f64,
     pub transverse: f64,
     pub moment: f64,
+    pub moment_t: f64,
+    pub moment_s: f64,
     pub power: f64,
 }
 
@@ -148,19 +152,27 @@ pub struct SliceSum {
 /// nn.
 pub type TractionSlope = [f64; 6];
 
-/// Point of a contact, m from its centre: along the rolling direction (t) and across it (s).
+/// Point of a contact, m from its centre: along the rolling direction (t), across it (s), and from the tangent plane
+/// towards the ball's centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactPoint {
     pub x: f64,
     pub y: f64,
+    pub depth: f64,
 }
 
-/// Slip at a point of a contact from the slip at its centre and the relative spin about n: t and s components, m/s.
-/// Without `ACROSS`, `x` is zero and ignored.
+/// Slip at a point of a contact from the slip at its centre and the relative spin about t, s and n: t and s components,
+/// m/s. Without `ACROSS`, `x` and `depth` are zero and ignored.
 #[inline(always)]
-fn slip_at<const ACROSS: bool>(slip: [f64; 2], spin: f64, point: ContactPoint) -> [f64; 2] {
-    let ContactPoint { x, y } = point;
-    [slip[0] - spin * y, if ACROSS { slip[1] + spin * x } else { slip[1] }]
+fn slip_at<const ACROSS: bool>(slip: [f64; 2], spin: Vec3, point: ContactPoint) -> [f64; 2] {
+    let ContactPoint { x, y, depth } = point;
+    let [about_t, about_s, about_n] = spin;
+    if ACROSS {
+        // Spin × (x t + y s − depth n).
+        [slip[0] - about_n * y - depth * about_s, slip[1] + about_n * x + depth * about_t]
+    } else {
+        [slip[0] - about_n * y, slip[1]]
+    }
 }
 
 /// Adds the traction of a point with a `share` of the load. `friction` returns its [`Resistance`] from the square of
@@ -170,12 +182,12 @@ fn slip_at<const ACROSS: bool>(slip: [f64; 2], spin: f64, point: ContactPoint) -
 pub fn add_slice<const ACROSS: bool>(
     sum: &SliceSum,
     slip: [f64; 2],
-    spin: f64,
+    spin: Vec3,
     point: ContactPoint,
     share: f64,
     friction: impl Fn(f64, f64) -> Resistance,
 ) -> SliceSum {
-    let ContactPoint { x, y } = point;
+    let ContactPoint { x, y, depth } = point;
     let [slip_t, slip_s] = slip_at::<ACROSS>(slip, spin, point);
     let [per_speed, power] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let along = -per_speed * slip_t;
@@ -184,8 +196,10 @@ pub fn add_slice<const ACROSS: bool>(
     SliceSum {
         rolling: sum.rolling + along,
         transverse: sum.transverse + across,
-        // (x t + y s) × (along t + across s) = (x across − y along) n.
+        // (x t + y s − depth n) × (along t + across s).
         moment: if ACROSS { moment + x * across } else { moment },
+        moment_t: if ACROSS { sum.moment_t + depth * across } else { 0.0 },
+        moment_s: if ACROSS { sum.moment_s - depth * along } else { 0.0 },
         power: sum.power - power,
     }
 }
@@ -196,12 +210,12 @@ pub fn add_slice<const ACROSS: bool>(
 pub fn add_slope<const ACROSS: bool>(
     sum: &TractionSlope,
     slip: [f64; 2],
-    spin: f64,
+    spin: Vec3,
     point: ContactPoint,
     share: f64,
     friction: impl Fn(f64, f64) -> Steepness,
 ) -> TractionSlope {
-    let ContactPoint { x, y } = point;
+    let ContactPoint { x, y, .. } = point;
     let [slip_t, slip_s] = slip_at::<ACROSS>(slip, spin, point);
     let [secant, steep] = friction(slip_t * slip_t + slip_s * slip_s, share);
     let tt = secant + steep * slip_t * slip_t;
@@ -222,7 +236,7 @@ pub fn add_slope<const ACROSS: bool>(
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TractionForce {
     pub force: Vec3,
-    /// Moment about the normal, N·m.
+    /// Moment about the contact's centre, N·m: about the normal, and in a curved contact about t and s.
     pub moment: Vec3,
     /// Power of the traction, W, ≤ 0.
     pub power: f64,
@@ -236,9 +250,14 @@ pub fn traction_force(
     normal_load: f64,
 ) -> TractionForce {
     let rolling = scale(sliding.rolling_direction, sum.rolling * normal_load);
+    let mut moment = scale(normal, sum.moment * normal_load);
+    if sum.moment_t != 0.0 || sum.moment_s != 0.0 {
+        moment = add_scaled(moment, sum.moment_t * normal_load, sliding.rolling_direction);
+        moment = add_scaled(moment, sum.moment_s * normal_load, sliding.transverse_direction);
+    }
     TractionForce {
         force: add_scaled(rolling, sum.transverse * normal_load, sliding.transverse_direction),
-        moment: scale(normal, sum.moment * normal_load),
+        moment,
         power: sum.power * normal_load,
     }
 }
@@ -250,13 +269,16 @@ pub struct Patch {
     pub semi_major: f64,
     /// Along the rolling direction, m. Not used for points on the major axis.
     pub semi_minor: f64,
+    /// Depth of the pressed surface below the tangent plane divided by y², 1/m; zero without differential sliding.
+    pub curving: f64,
 }
 
 impl Patch {
     /// Position of a point given by fractions of the semi-axes.
     #[inline(always)]
     pub fn point(&self, middle: f64, offset: f64) -> ContactPoint {
-        ContactPoint { x: offset * self.semi_minor, y: middle * self.semi_major }
+        let y = middle * self.semi_major;
+        ContactPoint { x: offset * self.semi_minor, y, depth: self.curving * y * y }
     }
 }
 
@@ -275,8 +297,7 @@ pub fn integrate(law: &TractionLaw, slices: &Slices, sliding: &Sliding, patch: &
     for (middle, offset, share) in slices.points() {
         let point = patch.point(middle, offset);
         let friction = |square, share| resistance_of(law, square, share, sliding.entrainment);
-        sum =
-            add_slice::<true>(&sum, sliding.slip, sliding.relative_spin[2], point, share, friction);
+        sum = add_slice::<true>(&sum, sliding.slip, sliding.relative_spin, point, share, friction);
     }
     sum
 }
@@ -292,8 +313,7 @@ pub fn integrate_slope(
     for (middle, offset, share) in slices.points() {
         let point = patch.point(middle, offset);
         let friction = |square, share| steepness_of(law, square, share, sliding.entrainment);
-        sum =
-            add_slope::<true>(&sum, sliding.slip, sliding.relative_spin[2], point, share, friction);
+        sum = add_slope::<true>(&sum, sliding.slip, sliding.relative_spin, point, share, friction);
     }
     sum
 }

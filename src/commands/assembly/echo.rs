@@ -7,7 +7,7 @@ use crate::commands::{echo as bearing_echo, echo_run, solid};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::members::beam::{BeamDisc, BeamSegment};
-use bearing_dynamics::members::connection::MaxwellElement;
+use bearing_dynamics::members::connection::{CrossCoupling, MaxwellElement};
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::RunSettings;
 use bearing_dynamics::scene::build::assembly::{
@@ -146,6 +146,16 @@ fn spring(scene: &AssemblyScene, spring: &Spring) -> Result<Value, ResultsError>
         "stiffness": six(&spring.stiffness, ["N/m", "N m/rad"])?,
         "damping": six(&spring.damping, ["N s/m", "N m s/rad"])?,
     });
+    if spring.cross != CrossCoupling::default() {
+        for (table, values, unit) in [
+            ("stiffness", spring.cross.stiffness, "N/m"),
+            ("damping", spring.cross.damping, "N s/m"),
+        ] {
+            for (name, value) in ["yz", "zy"].into_iter().zip(values) {
+                echo[table][name] = quantity(name, value, unit)?;
+            }
+        }
+    }
     let element = |of: &MaxwellElement| -> Result<Value, ResultsError> {
         let relaxation_time = quantity("relaxation_time", of.relaxation_time, "s")?;
         let stiffness = six(&of.stiffness, ["N/m", "N m/rad"])?;

@@ -59,6 +59,13 @@ pub fn find_equilibrium<'s>(
     read: f64,
 ) -> Fallible<Found<'s>> {
     scene.check_smooth()?;
+    if let Some(name) = scene.circulatory_spring() {
+        return Err(format!(
+            "spring {name}: `stiffness.yz` and `stiffness.zy` differ, and no equilibrium of an energy has this circulatory \
+             force. Hint: use modes or run"
+        )
+        .into());
+    }
     let housings = housings::prepare(document, scene)?;
     let start = Instant::now();
     let bores = housings::condensed(&housings)?;

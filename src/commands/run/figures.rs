@@ -121,6 +121,12 @@ pub fn rotation(summary: &Value) -> String {
             lines.push((format!("{name}{label}"), format!("{frequency:.3} Hz{slip}")));
         }
     }
+    let friction = &summary["friction"];
+    if let Some(power) = value(friction, "power_loss") {
+        let torque = value(friction, "torque")
+            .map_or(String::new(), |torque| format!(", friction torque {:.4} N mm", 1e3 * torque));
+        lines.push(("friction".into(), format!("power loss {power:.4e} W{torque}")));
+    }
     let channels = summary["spectra"]["channels"].as_object();
     for (channel, of) in channels.into_iter().flatten() {
         let highest = &of["peaks"][0];

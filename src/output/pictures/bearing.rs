@@ -5,6 +5,7 @@ use crate::output::defect_lines::{BearingLines, DefectLine, lines_for};
 use crate::output::plots::{
     Axis, Curve, Mark, OrbitPlot, PlotError, PolarPlot, Style, XyPlot, orbit, polar, xy, xy_marked,
 };
+use crate::output::run_up::{Turn, turns};
 use crate::output::spectrum::{MAIN_LOBE, SIDE_LOBES, Spectrum, WINDOW};
 use crate::output::table::{Moving, RunTable};
 
@@ -21,7 +22,7 @@ pub enum Picture {
     SlipSpin,
     /// Normal load over ball azimuth, as in Fig. 3.31.
     Polar,
-    /// Distance of races, bodies and sections from the axis over their speed, as in Fig. 4.19.
+    /// Distance of races, bodies and sections from the axis over their speed, as in Fig. 4.19, and their amplitudes.
     RunUp,
 }
 
@@ -198,7 +199,32 @@ fn run_ups(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotE
             style: Style::Lines,
             curves: vec![Curve::new(name.clone(), thin(points.collect(), POINTS))],
         })?;
-        drawn.push((format!("run_up_{}.svg", name.replace(' ', "_")), svg));
+        let file = name.replace(' ', "_");
+        drawn.push((format!("run_up_{file}.svg"), svg));
+        let mut curves = Vec::new();
+        for (axis, values) in [("Y", &y), ("Z", &z)] {
+            let turns = turns(&speed, values, table.interval);
+            let of = |value: fn(&Turn) -> f64| {
+                let points = turns.iter().map(|of| point(rpm * of.speed, 1e6 * value(of)));
+                thin(points.collect(), POINTS)
+            };
+            if !turns.is_empty() {
+                let half = of(|of| of.half_peak_to_peak);
+                curves.push(Curve::new(format!("{axis}, half peak-to-peak"), half));
+                curves.push(Curve::new(format!("{axis}, 1X"), of(|of| of.once_per_turn)));
+            }
+        }
+        if curves.is_empty() {
+            continue;
+        }
+        let svg = xy(&XyPlot {
+            title: format!("{title}: amplitude of the {name} over its speed"),
+            x: Axis::linear("speed", "rpm"),
+            y: Axis::linear("amplitude over a turn", "um"),
+            style: Style::Lines,
+            curves,
+        })?;
+        drawn.push((format!("run_up_amplitude_{file}.svg"), svg));
     }
     Ok(drawn)
 }

@@ -25,7 +25,7 @@ pub fn campbell(title: &str, of: &Campbell, critical: &[f64]) -> Result<String, 
     let last = of.speeds.last().copied().unwrap_or(0.0);
     let end = last.abs().min(highest * TAU);
     let turn = [rpm(end.copysign(last)), end / TAU];
-    curves.push(Curve::new("synchronous", vec![[0.0, 0.0], turn]));
+    curves.push(Curve::new("1X", vec![[0.0, 0.0], turn]));
     let meet = critical.iter().filter(|speed| speed.abs() <= end);
     let meet: Vec<[f64; 2]> =
         meet.map(|speed| [rpm(speed.copysign(last)), speed.abs() / TAU]).collect();

@@ -1,6 +1,7 @@
 //! `summary.json` of a run, with sections for its parts, and the tables.
 
 mod bearing;
+mod friction;
 pub mod housing;
 pub mod rubber;
 pub mod solid;
@@ -190,6 +191,11 @@ pub fn run_summary(
             && let Some(kinematics) = bearing::kinematics(simulation, table)?
         {
             summary.insert("kinematics".into(), kinematics);
+        }
+        if let Some(simulation) = motion.bearing()
+            && let Some(friction) = friction::friction(simulation, table)?
+        {
+            summary.insert("friction".into(), friction);
         }
     }
     if !spectra.is_empty() {

@@ -7,7 +7,9 @@ use crate::assembly::static_lists::StaticAssembly;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::members::beam::Beam;
-use crate::members::connection::{Connection, Law, MaxwellElement, SpringDashpot};
+use crate::members::connection::{
+    Connection, CrossCoupling, Law, MaxwellElement, SpringDashpot,
+};
 use crate::members::flexible_shaft::{ElasticShaft, ShaftLoad, Unbalance};
 use crate::members::shaft_modes::{FreeShaftError, Kept, RigidPart, free_shaft};
 use crate::members::unbalance::least_inertia;
@@ -38,8 +40,10 @@ pub struct RoughBore {
 /// Bearings and their bodies, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyScene {
-    /// At least one; the scene of the first has the common part: title, run, outputs, gravity.
+    /// The scene of the first has the common part: title, run, outputs, gravity.
     pub bearings: Vec<PlacedBearing>,
+    /// The common part of a scene without bearings.
+    pub plain: Option<Box<Scene>>,
     pub bodies: Vec<SceneBody>,
     pub springs: Vec<Spring>,
     pub sensors: Vec<SceneSensor>,
@@ -178,6 +182,7 @@ pub struct Spring {
     pub ends: [SpringEnd; 2],
     pub stiffness: [f64; 6],
     pub damping: [f64; 6],
+    pub cross: CrossCoupling,
     pub maxwell: Vec<MaxwellElement>,
     /// Bushing whose stiffness and Maxwell elements these are.
     pub bushing: Option<Box<BushingOfSpring>>,
@@ -225,6 +230,7 @@ impl AssemblyScene {
         let bearing = PlacedBearing { name: None, carriers, reversed: false, scene, housing: None };
         AssemblyScene {
             bearings: vec![bearing],
+            plain: None,
             bodies: Vec::new(),
             springs: Vec::new(),
             sensors: Vec::new(),
@@ -257,7 +263,11 @@ impl AssemblyScene {
 
     /// The scene with the common part.
     pub fn common(&self) -> &Scene {
-        &self.bearings[0].scene
+        match (&self.plain, self.bearings.first()) {
+            (Some(plain), _) => plain,
+            (None, Some(first)) => &first.scene,
+            (None, None) => unreachable!("a scene without bearings has a common part"),
+        }
     }
 
     /// The bearing, alone or in its housing, whose equilibrium is that of its inner race under the scene's conditions;
@@ -288,6 +298,13 @@ impl AssemblyScene {
         let Some(rough) = self.bearings.iter().find(rough) else { return Ok(()) };
         let of = rough.name.as_ref().map_or(String::new(), |name| format!(".{name}"));
         Err(RoughBore { of })
+    }
+
+    /// Name of the first spring whose forces are circulatory, which no equilibrium of an energy has.
+    pub fn circulatory_spring(&self) -> Option<&str> {
+        let mut springs = self.springs.iter();
+        let found = springs.find(|spring| spring.cross.parts()[1] != 0.0);
+        found.map(|spring| spring.name.as_str())
     }
 
     /// Returns whether elements of rubber move in a run.
@@ -388,10 +405,11 @@ impl AssemblyScene {
                 Mount { body, along, reversed: false }
             });
             let [from, to] = spring.ends.map(|end| self.place(end));
-            let Spring { stiffness, damping, .. } = *spring;
+            let Spring { stiffness, damping, cross, .. } = *spring;
             let (maxwell, rest) = (spring.maxwell.clone(), [to - from, 0.0, 0.0]);
             let wall = spring.bushing.as_ref().map(|of| of.body.thickness);
-            let law = Law::SpringDashpot(SpringDashpot { stiffness, damping, maxwell, rest, wall });
+            let law = SpringDashpot { stiffness, damping, cross, maxwell, rest, wall };
+            let law = Law::SpringDashpot(law);
             let label = Some(spring.name.clone());
             Connection { name: format!("the spring {}", spring.name), label, ends, law }
         });

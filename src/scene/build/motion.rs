@@ -67,6 +67,7 @@ pub fn dynamic_problem(scene: &Scene) -> Result<DynamicProblem, DynamicsError> {
         traction: dynamics.traction.clone(),
         slices: dynamics.slices,
         points_across: dynamics.points_across,
+        differential_sliding: dynamics.differential_sliding,
         damping: dynamics.damping,
         ball_contact: dynamics.ball_friction.map(|[friction, regularisation_speed]| {
             let modulus = effective_modulus(&scene.ball_material, &scene.ball_material);

@@ -44,8 +44,9 @@ pub(crate) fn is_assembly(document: &Document) -> bool {
 pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError> {
     refuse_invalid_names(document)?;
     let bodies: Vec<&str> = document.names("body").collect();
+    let plain = without_bearing(document)?;
     let names: Vec<Option<&str>> = match document.names("bearing").map(Some).collect::<Vec<_>>() {
-        none if none.is_empty() => vec![None],
+        none if none.is_empty() && plain.is_none() => vec![None],
         some => some,
     };
     let mut defaults_used = Vec::new();
@@ -57,9 +58,10 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     }
     refuse_shared_places(document, &bearings)?;
     refuse_mixed_methods(document, &bearings)?;
-    let ball = bearings.iter().map(|b| b.scene.geometry.ball_radius).fold(0.0, f64::max);
-    let needs_mass =
-        bearings[0].scene.dynamics.run.is_some() || bearings[0].scene.gravity != [0.0; 3];
+    let ball = bearings.iter().map(|b| b.scene.geometry.ball_radius).reduce(f64::max);
+    let ball = ball.unwrap_or(FARTHEST);
+    let common = plain.as_deref().unwrap_or_else(|| &bearings[0].scene);
+    let needs_mass = common.dynamics.run.is_some() || common.gravity != [0.0; 3];
     let resolved = bodies
         .iter()
         .map(|name| body(document, name, ball, needs_mass, &mut defaults_used))
@@ -74,7 +76,7 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     refuse_rubber_in_races(document, &bearings, &springs)?;
     name_supports(&mut bearings, &springs);
     let sensors = Vec::new();
-    let scene = AssemblyScene { bearings, bodies: resolved, springs, sensors, defaults_used };
+    let scene = AssemblyScene { bearings, plain, bodies: resolved, springs, sensors, defaults_used };
     refuse_shared_columns(document, &scene)?;
     refuse_free_bodies(document, &scene)?;
     refuse_springs_on_elements(document, &scene)?;
@@ -88,6 +90,46 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
         refuse_inertia(document, &scene)?;
     }
     Ok(scene)
+}
+
+/// Largest prescribed displacement of a body in a scene without balls, m.
+const FARTHEST: f64 = 0.1;
+
+/// Title, run, outputs and gravity of bodies and springs without a bearing; `None` for a scene with one.
+fn without_bearing(document: &Document) -> Result<Option<Box<Scene>>, SceneError> {
+    const OF_BEARINGS: [&str; 5] =
+        ["inner_race", "outer_race", "traction", "contact_damping", "ball_contact"];
+    // The reader needs a bearing; nothing of it is in the scene.
+    const STAND_IN: [(&str, &str); 6] = [
+        ("bearing.kind", "deep-groove"),
+        ("bearing.balls", "8"),
+        ("bearing.pitch_radius", "30 mm"),
+        ("bearing.ball.radius", "5 mm"),
+        ("bearing.inner_race.conformity", "0.52"),
+        ("bearing.outer_race.conformity", "0.52"),
+    ];
+    let has_bearing =
+        document.first_below("bearing").is_some() || document.names("bearing").next().is_some();
+    if has_bearing || document.names("spring").next().is_none() {
+        return Ok(None);
+    }
+    let keys = [keys::DEFAULTS, "ball_forces.centrifugal"];
+    let given = keys.into_iter().find(|key| document.is_given(key));
+    if let Some(key) = OF_BEARINGS.iter().find_map(|of| document.first_below(of)).or(given) {
+        let reason = "the scene has no bearing";
+        return Err(document.refused(key, reason, "leave it out, or add [bearing]"));
+    }
+    let mut stand_in = document.clone();
+    for (key, value) in STAND_IN {
+        stand_in.set(key, value)?;
+    }
+    let mut scene = resolve_bearing(&stand_in)?;
+    let of_all = |used: &DefaultUsed| {
+        ["numerics", "output", "sweep"].iter().any(|table| used.key.starts_with(table))
+    };
+    scene.defaults_used.retain(of_all);
+    scene.dynamics.defaults_used.retain(of_all);
+    Ok(Some(Box::new(scene)))
 }
 
 /// Names the springs that support a race without a foundation in its default.

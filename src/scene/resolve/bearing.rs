@@ -10,7 +10,7 @@ use crate::scene::resolve::profile;
 use crate::scene::resolve::resolved::{DefaultUsed, Plot, RunPlot, Scene};
 use crate::scene::resolve::{cage, dynamics, geometry, solid};
 use crate::scene::tables::keys;
-use crate::scene::tables::keys::{Kind, Need};
+use crate::scene::tables::keys::{DEFAULT_SETS, DEFAULTS, Kind, Need};
 use crate::scene::text::document::Document;
 use crate::scene::text::units::{parse_number, parse_quantity};
 use crate::scene::text::value::Checked;
@@ -28,6 +28,7 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
 /// The bearing of a scene that may contain a solid as well.
 pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> {
     let mut reader = Reader::new(document);
+    reader.choice(DEFAULTS);
     let kind = match reader.required_choice("bearing.kind")? {
         "angular-contact" => BearingKind::AngularContact,
         _ => BearingKind::DeepGroove,
@@ -154,7 +155,7 @@ impl<'d> Reader<'d> {
     pub fn number(&mut self, path: &str) -> Option<f64> {
         self.given_number(path).or_else(|| {
             self.note_default(path);
-            default_number(path)
+            default_number(path, self.set())
         })
     }
 
@@ -173,11 +174,23 @@ impl<'d> Reader<'d> {
     pub fn choice(&mut self, path: &str) -> Option<&'static str> {
         self.given_choice(path).or_else(|| {
             self.note_default(path);
-            match keys::find(path)?.1.need {
-                Need::Default { value, .. } => Some(value),
-                _ => None,
-            }
+            Some(keys::find(path)?.1.need.default_in(self.set())?.0)
         })
+    }
+
+    /// The given truth value, else the default of the key table.
+    pub fn boolean(&mut self, path: &str) -> bool {
+        if let Some(Checked::Boolean(value)) = self.document.value(path) {
+            return *value;
+        }
+        self.note_default(path);
+        let need = keys::find(path).map(|(_, key)| key.need);
+        need.and_then(|need| need.default_in(self.set())).is_some_and(|(value, _)| value == "true")
+    }
+
+    /// Name of the set of defaults.
+    fn set(&self) -> &'static str {
+        self.given_choice(DEFAULTS).unwrap_or(DEFAULT_SETS[0])
     }
 
     /// The given choice, without the default.
@@ -191,10 +204,12 @@ impl<'d> Reader<'d> {
 
     /// Records that the key table's default of `path` is in use.
     pub fn note_default(&mut self, path: &str) {
-        if let Some((_, key)) = keys::find(path)
-            && let Need::Default { value, reason } = key.need
-        {
-            self.note(path, value, reason);
+        let set = self.set();
+        let Some((_, key)) = keys::find(path) else { return };
+        let Some((value, reason)) = key.need.default_in(set) else { return };
+        match key.need {
+            Need::BySet { .. } => self.note(path, value, &format!("{set} defaults: {reason}")),
+            _ => self.note(path, value, reason),
         }
     }
 
@@ -314,9 +329,9 @@ pub(crate) fn below(table: &str) -> String {
     if table.is_empty() { " at the top".to_string() } else { format!(" to [{table}]") }
 }
 
-fn default_number(path: &str) -> Option<f64> {
+fn default_number(path: &str, set: &str) -> Option<f64> {
     let (_, key) = keys::find(path)?;
-    let Need::Default { value, .. } = key.need else { return None };
+    let (value, _) = key.need.default_in(set)?;
     match key.kind {
         Kind::Quantity(dimension, _) | Kind::Profile(dimension, _) => {
             parse_quantity(value, dimension).ok().map(|quantity| quantity.si)

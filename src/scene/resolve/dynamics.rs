@@ -67,6 +67,7 @@ pub(crate) fn dynamics(
         slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
         // 1 to 9.
         points_across: reader.number("traction.points_across").unwrap_or(1.0) as usize,
+        differential_sliding: reader.boolean("traction.differential_sliding"),
         damping: contact::damping(reader)?,
         ball_friction: contact::ball_friction(reader, balls_meet)?,
         raceway_profiles: raceway_profile::profiles(reader, parts.geometry)?,

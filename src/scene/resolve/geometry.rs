@@ -111,6 +111,7 @@ fn through_of(word: &str) -> ClearanceThrough {
     match word {
         "inner-race" => ClearanceThrough::InnerRace,
         "outer-race" => ClearanceThrough::OuterRace,
+        "races" => ClearanceThrough::Races,
         _ => ClearanceThrough::Ball,
     }
 }
@@ -213,6 +214,18 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             ball = need_ball(because)?;
             outer = inner + 2.0 * ball + clearance;
         }
+        (Some(given), ClearanceThrough::Races) => {
+            let because = " (needed when the clearance sets both races)";
+            clearance = given;
+            ball = need_ball(because)?;
+            let middle = 0.5 * (need(INNER, because)? + need(OUTER, because)?);
+            inner = middle - ball - 0.5 * clearance;
+            outer = middle + ball + 0.5 * clearance;
+            if inner <= 0.0 {
+                let problem = Problem::NoRoomForBall { gap: middle, clearance };
+                return Err(reader.document.error(ball_key(reader), problem));
+            }
+        }
     }
     let advice = "check its unit and whether it is radial";
     limit_clearance(reader, clearance_key(reader), "", clearance, ball, advice)?;
@@ -265,6 +278,7 @@ fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneErr
     let (word, reason) = match (clearance, inner, outer, ball) {
         (true, false, true, true) => ("inner-race", "the inner race is the part without a radius"),
         (true, true, false, true) => ("outer-race", "the outer race is the part without a radius"),
+        (true, true, true, false) => ("ball", "the ball is the part without a size"),
         (true, ..) => {
             return Ok(reader.choice(THROUGH).map_or(ClearanceThrough::Ball, through_of));
         }

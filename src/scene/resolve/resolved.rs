@@ -162,6 +162,7 @@ pub struct Dynamics {
     pub traction: TractionLaw,
     pub slices: usize,
     pub points_across: usize,
+    pub differential_sliding: bool,
     pub damping: ContactDamping,
     /// Friction coefficient and regularisation speed (m/s) of the contact between balls.
     pub ball_friction: Option<[f64; 2]>,

@@ -1,6 +1,6 @@
 //! From the keys of a spring to its ends and its law.
 
-use crate::members::connection::MaxwellElement;
+use crate::members::connection::{CrossCoupling, MaxwellElement};
 use crate::scene::build::assembly::{
     Carrier, PlacedBearing, SIX, Spring, SpringAt, SpringEnd, race_at,
 };
@@ -55,15 +55,24 @@ pub(crate) fn spring(
         SIX.map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
     };
     let (stiffness, damping) = (six("stiffness"), six("damping"));
+    let pair = |what: &str| {
+        ["yz", "zy"].map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
+    };
+    let cross = CrossCoupling { stiffness: pair("stiffness"), damping: pair("damping") };
     let maxwell = scoped.items("spring.maxwell").map(maxwell).collect::<Result<Vec<_>, _>>()?;
     let ends = [SpringEnd { at: from, along }, SpringEnd { at: to, along: to_along }];
-    let mut spring = Spring { name: name.into(), ends, stiffness, damping, maxwell, bushing: None };
+    let name = name.into();
+    let mut spring = Spring { name, ends, stiffness, damping, cross, maxwell, bushing: None };
     match bushing(&mut reader)? {
         Some((bushing, law)) => {
             (spring.stiffness, spring.maxwell) = (law.stiffness, law.maxwell);
             spring.bushing = Some(Box::new(bushing));
         }
-        None if stiffness == [0.0; 6] && damping == [0.0; 6] && spring.maxwell.is_empty() => {
+        None if stiffness == [0.0; 6]
+            && damping == [0.0; 6]
+            && cross == CrossCoupling::default()
+            && spring.maxwell.is_empty() =>
+        {
             return Err(reader.missing("spring.stiffness.x", " or another spring or dashpot"));
         }
         None => {}

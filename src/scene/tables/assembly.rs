@@ -9,7 +9,9 @@ use crate::scene::tables::dynamics::{
 };
 use crate::scene::tables::keys::{Key, Kind, Need, Table, above, closed, list_table, open, table};
 use crate::scene::tables::solid::RUBBERS;
-use crate::scene::text::units::Dimension::{Angle, Frequency, Length, Stress, Time, Unbalance};
+use crate::scene::text::units::Dimension::{
+    Angle, Damping, Frequency, Length, Stiffness, Stress, Time, Unbalance,
+};
 use Need::{Default, Depends, Optional, Required};
 
 /// Name of a race that is a body of its own.
@@ -27,6 +29,9 @@ const METHODS: &[&str] = &["reduced", "explicit", "implicit"];
 const WITH_BUSHING: Need = Depends("required with `[spring.NAME.bushing]`");
 const FREE: Need = Depends("neither key: the coordinate is free and unloaded");
 const ALL_THREE: Need = Depends("all three, required for a run and with gravity");
+const CROSS: Kind = Kind::Quantity(Stiffness, closed(-1e13, 1e13, "N/m"));
+const CROSS_DASHPOT: Kind = Kind::Quantity(Damping, closed(-1e10, 1e10, "N s/m"));
+const CROSS_HINT: &str = "journal bearings and seals have them, of either sign; check the unit";
 const NO_SPRING: Need = Default { value: "0 N/m", reason: "no spring" };
 const NO_ROTATIONAL_SPRING: Need = Default { value: "0 N m/rad", reason: "no spring" };
 const NO_DASHPOT: Need = Default { value: "0 N s/m", reason: "no dashpot" };
@@ -79,12 +84,16 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("spring.stiffness.turn_x", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.turn_y", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.turn_z", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.stiffness.yz", CROSS, NO_SPRING, "Cross-coupled stiffness: force along Y per displacement along Z, F_y = -K_yz z.").hint(CROSS_HINT),
+    Key::new("spring.stiffness.zy", CROSS, NO_SPRING, "Cross-coupled stiffness: force along Z per displacement along Y, F_z = -K_zy y. If it differs from `yz`, the force is circulatory: runs and `modes` have it, equilibria only the mean of both.").hint(CROSS_HINT),
     Key::new("spring.damping.x", DASHPOT, NO_DASHPOT, "Damping along X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.y", DASHPOT, NO_DASHPOT, "Damping along Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.z", DASHPOT, NO_DASHPOT, "Damping along Z of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.turn_x", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Rotational damping about X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.turn_y", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Rotational damping about Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.turn_z", TILT_DASHPOT, NO_ROTATIONAL_DASHPOT, "Rotational damping about Z of the first body.").hint(FOUNDATION_HINT),
+    Key::new("spring.damping.yz", CROSS_DASHPOT, NO_DASHPOT, "Cross-coupled damping: force along Y per velocity along Z.").hint(CROSS_HINT),
+    Key::new("spring.damping.zy", CROSS_DASHPOT, NO_DASHPOT, "Cross-coupled damping: force along Z per velocity along Y.").hint(CROSS_HINT),
     Key::new("spring.bushing.inner_diameter", SIZE, WITH_BUSHING, "Inner diameter of the rubber.").hint(SIZE_HINT).example_of("71 mm"),
     Key::new("spring.bushing.outer_diameter", SIZE, WITH_BUSHING, "Outer diameter of the rubber.").hint(SIZE_HINT).example_of("91 mm"),
     Key::new("spring.bushing.length", SIZE, WITH_BUSHING, "Length of the rubber along X.").hint(SIZE_HINT).example_of("20 mm"),

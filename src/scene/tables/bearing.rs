@@ -1,14 +1,16 @@
 //! Rows of the key table: geometry and materials, conditions on the races, outputs.
 
-use crate::scene::tables::keys::{Key, Kind, Need, Range, Table, closed, list_table, open, table};
+use crate::scene::tables::keys::{
+    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, Table, closed, list_table, open, table,
+};
 use crate::scene::text::units::Dimension::{
     Acceleration, Angle, Density, Force, Length, Mass, Moment, RotationSpeed, Stress,
 };
-use Need::{Default, Depends, Optional, Required};
+use Need::{BySet, Default, Depends, Optional, Required};
 
 pub const KINDS: &[&str] = &["deep-groove", "angular-contact"];
 pub const HERTZ_MODELS: &[&str] = &["hamrock-brewe", "exact"];
-pub const THROUGH: &[&str] = &["ball", "inner-race", "outer-race"];
+pub const THROUGH: &[&str] = &["ball", "inner-race", "outer-race", "races"];
 pub const DENTED: &[&str] = &["outer", "inner"];
 /// Parts with a spall or waves.
 pub const PROFILED: &[&str] = &["outer", "inner", "ball"];
@@ -84,6 +86,9 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("base", Kind::Text, Optional, "Scene file that this scene inherits, relative to this file. Keys given here override those of the base."),
     Key::new("without", Kind::Text, Optional, "Keys, tables (`solid.mesh`) and named tables (`sensor.top`) of the base that are not inherited, separated by commas."),
 
+    Key::new(DEFAULTS, Kind::Choice(DEFAULT_SETS), Default { value: "engineering", reason: "friction and clearance as in real bearings" },
+        "Set of defaults of `bearing.hertz`, `bearing.clearance.through`, `traction.points_across` and `traction.differential_sliding`: those of real bearings, or those of the dissertation."),
+
     Key::new("bearing.kind", Kind::Choice(KINDS), Required, "Kind of bearing."),
     Key::new("bearing.balls", Kind::Integer { low: 3, high: 200 }, Required, "Number of balls.")
         .hint("one or two balls cannot support a race in every radial direction"),
@@ -91,7 +96,7 @@ pub(crate) const KEYS: &[Key] = &[
         Default { value: "0 deg", reason: "ball 1 is on the Y axis" },
         "Azimuth of ball 1, from +Y towards +Z. A `reversed` bearing measures it in its own axes: in the scene ball 1 is at 180 deg minus this angle, and the balls are numbered in the opposite sense."),
     Key::new("bearing.hertz", Kind::Choice(HERTZ_MODELS),
-        Default { value: "hamrock-brewe", reason: "the source's contact model" },
+        BySet { dissertation: ("hamrock-brewe", "its contact model"), engineering: ("exact", "no error of a fit") },
         "Solution of the elliptic Hertz contact: curve fit, or complete elliptic integrals."),
     quantity("bearing.pitch_radius", RADIUS,
         Depends("angular-contact: required; deep-groove: half way between the races"),
@@ -107,8 +112,8 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("bearing.clearance.diametral", CLEARANCE, CLEARANCE_NEED,
         "Diametral internal clearance, twice the radial one.").group("clearance"),
     Key::new("bearing.clearance.through", Kind::Choice(THROUGH),
-        Default { value: "ball", reason: "the source varies the clearance through the ball radius" },
-        "Part whose size is adjusted to give the clearance. Its given size is then the nominal size."),
+        BySet { dissertation: ("ball", "it varies the clearance through the ball radius"), engineering: ("races", "balls are made to size, races to clearance") },
+        "Part whose size is adjusted to give the clearance. Its given size is then the nominal size; `races`: half through each race."),
 
     quantity("bearing.inner_race.radius", RADIUS, RACE_RADIUS_NEED,
         "Radius of the groove bottom, measured from the axis.").hint(RADIUS_HINT).example_of("20.047 mm"),

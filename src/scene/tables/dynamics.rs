@@ -11,7 +11,7 @@ use crate::scene::text::units::Dimension::{
     Angle, Frequency, HertzStiffness, InverseSpeed, Mass, Rate, Speed, Stiffness, StiffnessPerArea,
     Time,
 };
-use Need::{Default, Depends, Optional};
+use Need::{BySet, Default, Depends, Optional};
 
 pub const MOTIONS: &[&str] = &["fixed", "5-dof", "6-dof"];
 pub const POCKETS: &[&str] = &["cylindrical", "spherical"];
@@ -198,8 +198,11 @@ pub(crate) const KEYS: &[Key] = &[
         "Lower bound of the entrainment speed in the slide-to-roll ratio.").hint(SLIP_HINT),
     Key::new("traction.slices", Kind::Integer { low: 1, high: 201 }, Default { value: "15", reason: "error 0.6 % in pure spin" },
         "Slices of the contact ellipse along its major axis, over which slip is integrated. One slice with one point has no friction from spin.").hint("the error in pure spin is 0.6 % with 15 slices and 0.06 % with 45; with rolling and spin under a steep law, up to 10 % with 15"),
-    Key::new("traction.points_across", Kind::Integer { low: 1, high: 9 }, Default { value: "1", reason: "the source varies slip along the ellipse only" },
+    Key::new("traction.points_across", Kind::Integer { low: 1, high: 9 }, BySet { dissertation: ("1", "it varies slip along the ellipse only"), engineering: ("3", "friction from spin within 1 %") },
         "Points across each slice. One point neglects the slip that spin causes across a slice. Friction from pure spin is then too low by the factor 1/E, E the complete elliptic integral of the contact: 2 % for an axis ratio of 8, 5 % for 5, 15 % for 2.3. With additional rolling slip, friction may be too high by as much.").hint("at an axis ratio of 2.3 the error in pure spin is 2 % with two points and 0.8 % with three, if `slices` is large").example_of("3"),
+
+    Key::new("traction.differential_sliding", Kind::Boolean, BySet { dissertation: ("false", "it takes contacts as flat"), engineering: ("true", "most of the friction of a bearing under radial load") },
+        "True to include the differential sliding of a ball in its curved groove (Heathcote): the ball rolls without slip on two lines of its contact only, and slides elsewhere."),
 
     Key::new("contact_damping.law", Kind::Choice(DAMPING_LAWS), Default { value: "none", reason: "the source states no contact damping" },
         "Damping law of the normal contacts between balls and races."),

@@ -87,6 +87,27 @@ pub enum Need {
         value: &'static str,
         reason: &'static str,
     },
+    /// Value and reason in each set of defaults.
+    BySet {
+        dissertation: (&'static str, &'static str),
+        engineering: (&'static str, &'static str),
+    },
+}
+
+/// Key that chooses the set of defaults.
+pub const DEFAULTS: &str = "defaults";
+pub const DEFAULT_SETS: &[&str] = &["engineering", "dissertation"];
+
+impl Need {
+    /// Default value and its reason in a set of defaults.
+    pub fn default_in(self, set: &str) -> Option<(&'static str, &'static str)> {
+        match self {
+            Need::Default { value, reason } => Some((value, reason)),
+            Need::BySet { dissertation, .. } if set == "dissertation" => Some(dissertation),
+            Need::BySet { engineering, .. } => Some(engineering),
+            Need::Required | Need::Optional | Need::Depends(_) => None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]

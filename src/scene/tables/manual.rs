@@ -121,6 +121,10 @@ fn table_markdown(text: &mut String, path: &str, heading: &str, doc: &str) {
             Need::Optional => "none".to_string(),
             Need::Depends(how) => how.to_string(),
             Need::Default { value, reason } => format!("`{value}` ({reason})"),
+            Need::BySet { dissertation, engineering } => {
+                let of = |(value, reason): (&str, &str)| format!("`{value}` ({reason})");
+                format!("engineering: {}; dissertation: {}", of(engineering), of(dissertation))
+            }
         };
         let (kind, allowed) = kind_and_range(key);
         let _ =

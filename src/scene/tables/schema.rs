@@ -300,6 +300,10 @@ fn key_schema(key: &'static Key) -> Value {
         if let Need::Default { value, .. } = key.need {
             let _ = write!(description, " Default: {value}.");
         }
+        if let Need::BySet { dissertation, engineering } = key.need {
+            let [one, other] = [engineering.0, dissertation.0];
+            let _ = write!(description, " Default: {one} (engineering), {other} (dissertation).");
+        }
         entries.insert("description".into(), json!(description));
     }
     schema

@@ -25,7 +25,8 @@ pub const DEFAULT: Study = Study {
     run,
 };
 
-const BALLS: &str = r#"[bearing]
+const BALLS: &str = r#"defaults = "dissertation"
+[bearing]
 kind = "deep-groove"
 balls = 8
 inner_race = { radius = "20.047 mm", groove_radius = "6.013 mm", bore_radius = "15 mm" }
@@ -46,14 +47,16 @@ friction = 0.1
 gravity = ["0 m/s^2", "0 m/s^2", "-9.80665 m/s^2"]
 "#;
 
-const THIN: &str = r#"[bearing]
+const THIN: &str = r#"defaults = "dissertation"
+[bearing]
 kind = "deep-groove"
 balls = 40
 inner_race = { radius = "47.5 mm", groove_radius = "2.6 mm" }
 outer_race = { radius = "52.5 mm", groove_radius = "2.6 mm" }
 "#;
 
-const TINY: &str = r#"[bearing]
+const TINY: &str = r#"defaults = "dissertation"
+[bearing]
 kind = "deep-groove"
 balls = 3
 inner_race = { radius = "0.75 mm", groove_radius = "0.26 mm" }
