@@ -6,12 +6,14 @@ use bearing_dynamics::equilibrium::statics::{
 };
 use bearing_dynamics::output::results::load_zone_of;
 use bearing_dynamics::output::warnings::{Warning, lines};
+use nalgebra::SMatrix;
 use std::fmt::Write;
 
 /// Position, reactions, stiffness, balls, lines on the `housing`, and warnings.
 pub fn render(solution: &StaticSolution, housing: &str, warnings: &[Warning]) -> String {
     let mut text = String::new();
     race(&mut text, solution);
+    text += if housing.is_empty() { "" } else { "\nbearing, from race to race" };
     stiffness(&mut text, |i, j| solution.stiffness[(i, j)]);
     ball_lines(&mut text, &solution.balls);
     let (loaded, extent) = load_zone_of(&solution.balls);
@@ -28,6 +30,13 @@ pub fn render(solution: &StaticSolution, housing: &str, warnings: &[Warning]) ->
     );
     text += housing;
     text + &lines(warnings)
+}
+
+/// Stiffness of a shaft against the ground, through its bearing and the housing.
+pub fn ground_stiffness(matrix: &SMatrix<f64, 5, 5>) -> String {
+    let mut text = "\nshaft against the ground, through bearing and housing".to_string();
+    stiffness(&mut text, |i, j| matrix[(i, j)]);
+    text
 }
 
 /// [`render`] for several bodies and bearings; `names` are those of the bearings, `housings` the lines on housings.

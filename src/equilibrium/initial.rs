@@ -13,9 +13,9 @@ use crate::equilibrium::sections;
 use crate::equilibrium::statics::{
     AssemblySolution, Condition, StaticOptions, StaticsError, solve_assembly,
 };
-use crate::members::connection::Connection;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
+use crate::members::connection::Connection;
 use crate::motion::validity::FARTHEST;
 use nalgebra::{SVector, Vector3};
 

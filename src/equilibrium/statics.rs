@@ -421,6 +421,31 @@ fn solution(
     })
 }
 
+/// Stiffness of the first loaded body with all others free where no motion is prescribed, N/m, N, N·m: of a shaft against
+/// the ground, through its bearing and a flexible housing. `None` if another body has no stiffness of its own.
+pub fn stiffness_to_ground(
+    still: &StaticAssembly,
+    solution: &AssemblySolution,
+) -> Option<SMatrix<f64, 5, 5>> {
+    let whole = &solution.stiffness;
+    let loaded = still.bodies.iter().filter_map(|body| match &body.place {
+        Place::Loaded(loaded) => Some(loaded),
+        _ => None,
+    });
+    let free: Vec<usize> = loaded
+        .enumerate()
+        .skip(1)
+        .flat_map(|(place, body)| {
+            (0..5).filter(|i| body.prescribed(*i).is_none()).map(move |i| 5 * place + i)
+        })
+        .collect();
+    let own: SMatrix<f64, 5, 5> = whole.fixed_view::<5, 5>(0, 0).into_owned();
+    let others = DMatrix::from_fn(free.len(), free.len(), |i, j| whole[(free[i], free[j])]);
+    let cross = DMatrix::from_fn(free.len(), 5, |i, j| whole[(free[i], j)]);
+    let follows = others.cholesky()?.solve(&cross);
+    Some(own - SMatrix::<f64, 5, 5>::from_fn(|i, j| cross.column(i).dot(&follows.column(j))))
+}
+
 /// Stiffness over the coordinates of bodies, with amplitudes in equilibrium.
 fn of_bodies(whole: &DMatrix<f64>, bodies: usize) -> DMatrix<f64> {
     let shapes = whole.nrows() - bodies;

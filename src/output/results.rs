@@ -16,6 +16,7 @@ use crate::equilibrium::statics::{
 };
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::series::{Column, Series, SeriesError, columns_path};
+use nalgebra::SMatrix;
 use nalgebra::{SVector, Vector3};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
@@ -208,7 +209,7 @@ pub fn static_summary(solution: &StaticSolution, run: &RunRecord) -> Result<Valu
             "contact_moment": vector("contact_moment", &solution.moment_on_outer, "N m")?,
         }),
     );
-    put("stiffness", stiffness(solution)?);
+    put("stiffness", stiffness_section(&solution.stiffness)?);
     put("load_zone", load_zone(&solution.balls)?);
     let balls: Result<Vec<Value>, _> =
         solution.balls.iter().enumerate().map(|(index, b)| ball(index + 1, b)).collect();
@@ -286,7 +287,7 @@ pub(super) fn place_and_loads(
 }
 
 /// Stiffness matrix. Row: load; column: coordinate of differentiation.
-fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
+pub fn stiffness_section(stiffness: &SMatrix<f64, 5, 5>) -> Result<Value, ResultsError> {
     let mut rows = Map::new();
     for (i, row_name) in COORDINATE_NAMES.iter().enumerate() {
         let mut row = Map::new();
@@ -298,7 +299,7 @@ fn stiffness(solution: &StaticSolution) -> Result<Value, ResultsError> {
                 (false, false) => "N m/rad",
             };
             let name = format!("stiffness {row_name} {column_name}");
-            row.insert(column_name.to_string(), quantity(&name, solution.stiffness[(i, j)], unit)?);
+            row.insert(column_name.to_string(), quantity(&name, stiffness[(i, j)], unit)?);
         }
         rows.insert(row_name.to_string(), Value::Object(row));
     }

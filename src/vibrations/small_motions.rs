@@ -108,7 +108,10 @@ pub fn whirling(
     }
     // The model's connections are between sections of flexible bodies; the assembly's name the body that rotates.
     // Equilibria are without circulatory forces.
-    let whole: Vec<Connection> = assembly.connections.iter().zip(&model.assembly.connections)
+    let whole: Vec<Connection> = assembly
+        .connections
+        .iter()
+        .zip(&model.assembly.connections)
         .map(|(own, placed)| Connection { law: own.law.clone(), ..placed.clone() })
         .collect();
     let spins = assembly.connections.iter().map(|of| ratio(of.ends[0].body));

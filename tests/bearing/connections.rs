@@ -6,7 +6,7 @@ use crate::dynamics;
 use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::assembly::state::BodyState;
 use bearing_dynamics::members::connection::{
-    Connection, Law, MaxwellElement, SpringDashpot, Torsion,
+    Connection, CrossCoupling, Law, MaxwellElement, SpringDashpot, Torsion,
 };
 use bearing_dynamics::members::rigid_body::{BodyKinematics, kinematics_at_mount};
 use dynamics::*;
@@ -41,8 +41,16 @@ pub const SPRING: SpringDashpot = SpringDashpot {
     damping: [200.0, 100.0, 300.0, 0.05, 0.4, 0.7],
     rest: [1e-3, -2e-3, 0.5e-3],
     wall: None,
+    cross: CrossCoupling { stiffness: [0.0; 2], damping: [0.0; 2] },
     maxwell: Vec::new(),
 };
+
+/// Of a journal bearing: cross-coupled, partly circulatory.
+fn crossed() -> Connection {
+    let cross = CrossCoupling { stiffness: [1.3e6, -0.4e6], damping: [30.0, -170.0] };
+    let law = Law::SpringDashpot(SpringDashpot { cross, ..SPRING });
+    Connection { name: "cross".into(), law, ..spring() }
+}
 
 pub fn spring() -> Connection {
     kinds().remove(0)
@@ -117,7 +125,7 @@ fn after(bodies: &[BodyKinematics; 2], time: f64) -> [BodyKinematics; 2] {
 
 #[test]
 fn what_one_end_gets_the_other_gets_too() {
-    for connection in kinds() {
+    for connection in kinds().into_iter().chain([crossed()]) {
         for seed in 0..50 {
             let bodies = pair(seed, 1.5);
             let ([first, second], ..) = pull(&connection, &bodies);
@@ -132,7 +140,7 @@ fn what_one_end_gets_the_other_gets_too() {
 
 #[test]
 fn power_goes_into_the_store_or_is_lost() {
-    for connection in kinds() {
+    for connection in kinds().into_iter().chain([crossed()]) {
         for seed in 0..50 {
             let bodies = pair(seed, 1.0);
             let (on, _, loss) = pull(&connection, &bodies);

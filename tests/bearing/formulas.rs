@@ -145,11 +145,8 @@ mod slices {
         assert!((exact / (0.07 * semi_major * semi_major / radius) - 0.08).abs() <= 1e-3);
         // Slip at the centre that leaves no force.
         let slip = curving * (line * semi_major).powi(2) * spin;
-        let sliding = Sliding {
-            slip: [slip, 0.0],
-            relative_spin: [0.0, spin, 0.0],
-            ..Sliding::default()
-        };
+        let sliding =
+            Sliding { slip: [slip, 0.0], relative_spin: [0.0, spin, 0.0], ..Sliding::default() };
         let mut errors = Vec::new();
         for count in [45, 135, 405] {
             let sum = integrate(&law, &Slices::new(count, 1), &sliding, &patch);

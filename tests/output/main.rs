@@ -10,5 +10,6 @@ mod compare_npy;
 mod compare_tolerances;
 mod output_files;
 mod output_plots;
+mod run_up;
 mod small_laws;
 mod spectrum_laws;

@@ -266,7 +266,8 @@ fn traction(bearing: &Bearing, subject: Subject) -> Item {
         1 => String::new(),
         points => format!(", {points} points across each"),
     };
-    let curved = if bearing.differential_sliding { "; differential sliding in the grooves" } else { "" };
+    let curved =
+        if bearing.differential_sliding { "; differential sliding in the grooves" } else { "" };
     let why = format!("{law}; {slices} slices on each loaded contact{across}{curved}");
     Item::does(Stage::Traction, subject, why)
 }

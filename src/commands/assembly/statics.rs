@@ -12,7 +12,7 @@ use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, pictures, print, record, table};
 use bearing_dynamics::assembly::static_lists::StaticAssembly;
 use bearing_dynamics::equilibrium::quasi_static_sequence::EquilibriumAt;
-use bearing_dynamics::equilibrium::statics::{StaticProblem, StaticSolution};
+use bearing_dynamics::equilibrium::statics::{StaticProblem, StaticSolution, stiffness_to_ground};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::output::assembly_results::{Solved, readable, write};
 use bearing_dynamics::output::atomic::write_atomic;
@@ -20,7 +20,9 @@ use bearing_dynamics::output::fields::bore::{BoreNodeState, bore_series, condens
 use bearing_dynamics::output::fields::{Stresses, file_name, stresses, write_fields, write_list};
 use bearing_dynamics::output::plots::{LoadZone, load_zone};
 use bearing_dynamics::output::recorder::seat::{SeatRow, seat_columns};
-use bearing_dynamics::output::results::{ResultsError, RunRecord, quantity, write_static_results};
+use bearing_dynamics::output::results::{
+    ResultsError, RunRecord, quantity, stiffness_section, write_static_results,
+};
 use bearing_dynamics::output::summary::housing::{
     PEAK_PRESSURE, equilibrium_section, solver_section,
 };
@@ -30,6 +32,7 @@ use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Plot};
 use bearing_dynamics::solids::bore_equilibrium::{BoreState, POSE_NAMES};
 use bearing_dynamics::solids::condensation::CondensedBore;
+use nalgebra::SMatrix;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -49,6 +52,8 @@ pub struct Found<'s> {
     warnings: Vec<Warning>,
     inertia: Option<FrequencyRatio>,
     settled: Vec<Settled>,
+    /// Stiffness of the shaft against the ground; `None` for rigid housings and with several bearings.
+    to_ground: Option<SMatrix<f64, 5, 5>>,
     pub record: RunRecord,
 }
 
@@ -122,6 +127,13 @@ pub fn find_equilibrium<'s>(
         own.record(bore, moment, &mut record)?;
         settled.push(own);
     }
+    let to_ground = match (&of_one, &settled[..]) {
+        (Some(_), [_]) => stiffness_to_ground(still, &moment.solution),
+        _ => None,
+    };
+    if let Some(matrix) = &to_ground {
+        record.sections.push(("stiffness_to_ground".into(), stiffness_section(matrix)?));
+    }
     record.sections.push(("warnings".into(), json!(warnings)));
     if let Some(ratio) = &inertia {
         record.sections.push(("inertia".into(), ratio.section()?));
@@ -133,7 +145,18 @@ pub fn find_equilibrium<'s>(
     let StaticAssembly { bodies, bearings, connections, shafts, .. } = still;
     let assembly = StaticAssembly { bodies, bearings, connections, shafts, seats: Vec::new() };
     let names = scene.bearings.iter().map(name_of).collect();
-    Ok(Found { scene, names, assembly, moment, of_one, warnings, inertia, settled, record })
+    Ok(Found {
+        scene,
+        names,
+        assembly,
+        moment,
+        of_one,
+        warnings,
+        inertia,
+        settled,
+        to_ground,
+        record,
+    })
 }
 
 /// Section of each bearing under its name; that of a single one without a name.
@@ -153,7 +176,10 @@ fn by_name(
 
 impl Found<'_> {
     fn text(&self) -> String {
-        let of_housings: String = self.settled.iter().map(Settled::text).collect();
+        let mut of_housings: String = self.settled.iter().map(Settled::text).collect();
+        if let Some(matrix) = &self.to_ground {
+            of_housings += &table::ground_stiffness(matrix);
+        }
         let solution = &self.moment.solution;
         let mut text = String::new();
         for note in self.settled.iter().flat_map(|settled| settled.housing.notes()) {

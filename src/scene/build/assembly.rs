@@ -7,9 +7,7 @@ use crate::assembly::static_lists::StaticAssembly;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::members::beam::Beam;
-use crate::members::connection::{
-    Connection, CrossCoupling, Law, MaxwellElement, SpringDashpot,
-};
+use crate::members::connection::{Connection, CrossCoupling, Law, MaxwellElement, SpringDashpot};
 use crate::members::flexible_shaft::{ElasticShaft, ShaftLoad, Unbalance};
 use crate::members::shaft_modes::{FreeShaftError, Kept, RigidPart, free_shaft};
 use crate::members::unbalance::least_inertia;

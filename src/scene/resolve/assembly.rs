@@ -76,7 +76,8 @@ pub(crate) fn assembly(document: &Document) -> Result<AssemblyScene, SceneError>
     refuse_rubber_in_races(document, &bearings, &springs)?;
     name_supports(&mut bearings, &springs);
     let sensors = Vec::new();
-    let scene = AssemblyScene { bearings, plain, bodies: resolved, springs, sensors, defaults_used };
+    let scene =
+        AssemblyScene { bearings, plain, bodies: resolved, springs, sensors, defaults_used };
     refuse_shared_columns(document, &scene)?;
     refuse_free_bodies(document, &scene)?;
     refuse_springs_on_elements(document, &scene)?;

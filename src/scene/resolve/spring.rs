@@ -56,7 +56,8 @@ pub(crate) fn spring(
     };
     let (stiffness, damping) = (six("stiffness"), six("damping"));
     let pair = |what: &str| {
-        ["yz", "zy"].map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
+        ["yz", "zy"]
+            .map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
     };
     let cross = CrossCoupling { stiffness: pair("stiffness"), damping: pair("damping") };
     let maxwell = scoped.items("spring.maxwell").map(maxwell).collect::<Result<Vec<_>, _>>()?;
