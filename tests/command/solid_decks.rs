@@ -56,7 +56,11 @@ fn variants_of_one_body_have_one_solution() {
     let all = decks();
     let plain = of_variant(&place, &all[0], "inp");
     assert!(plain[2] < -1e-7, "{plain:?}");
-    let some = all.iter().skip(1).step_by(23).chain(all.last()).map(|variant| (variant, "inp"));
+    let bodies = all.iter().filter(|variant| {
+        variant.name.starts_with("numbers: whole") && variant.name.ends_with("start: nothing")
+    });
+    let some = bodies.chain(all.iter().skip(1).step_by(23)).chain(all.last());
+    let some = some.map(|variant| (variant, "inp"));
     let files = gmsh_files();
     let some = some.chain(files.iter().step_by(11).map(|variant| (variant, "msh")));
     for (variant, ending) in some {

@@ -73,7 +73,7 @@ pub fn words(text: &str) -> Vec<&str> {
     words
 }
 
-/// Form in which labels are compared: quotes keep the case of letters, which counts nowhere else.
+/// Form in which labels are compared: quotes keep the case of letters, which counts only there.
 pub fn key(word: &str) -> String {
     let mut quoted = false;
     let mut key = String::new();
