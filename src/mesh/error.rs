@@ -7,9 +7,7 @@ use thiserror::Error;
 /// Error of an operation on a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MeshError {
-    #[error(
-        "the mesh has no tetrahedra; in Gmsh, assign a physical group to the volume, or save all elements"
-    )]
+    #[error("the mesh has no tetrahedra")]
     NoElements,
     #[error("{count} nodes or elements are too many; at most {max} can be numbered", max = u32::MAX)]
     TooLarge { count: usize },

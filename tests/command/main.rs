@@ -6,6 +6,8 @@ mod assembly_common;
 mod command_line_common;
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../deck_common/mod.rs"]
+mod deck_common;
 #[path = "../common/dynamics.rs"]
 mod dynamics;
 #[path = "../housed_command_common/mod.rs"]
@@ -63,6 +65,7 @@ mod solid_command;
 mod solid_command_errors;
 mod solid_command_numbers;
 mod solid_command_resume;
+mod solid_decks;
 mod sweep_of_runs;
 mod sweep_resume;
 mod turning_springs;

@@ -1,5 +1,7 @@
 //! Meshes: files, generators, faults, numbering.
 
+#[path = "../deck_common/mod.rs"]
+mod deck_common;
 #[path = "../fuzz_common/mod.rs"]
 mod fuzz_common;
 #[path = "../outside_common/mod.rs"]
@@ -9,5 +11,6 @@ mod mesh_faults;
 mod mesh_files;
 mod mesh_fuzz;
 mod mesh_generators;
+mod mesh_variants;
 mod mesh_vtu;
 mod vector_areas;

@@ -297,15 +297,28 @@ fn a_deck_has_the_constants_of_its_first_temperature() {
     assert_eq!((materials[0].elastic, materials[0].density), (Some([210e9, 0.3]), Some(7850.0)));
 }
 
+/// Fault of a set that is used.
+fn fault_of(set: &str, from: &str, to: &str) -> ReadError {
+    assert!(DECK.contains(from), "{from}");
+    let text = DECK.replacen(from, to, 1);
+    let read = || read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap();
+    // Unused, it is skipped with one line.
+    let mut unused = read();
+    unused.use_sets(&[]).unwrap();
+    let skipped = |note: &&Note| matches!(note, Note::SetsSkipped { names, .. } if names.iter().any(|name| name.eq_ignore_ascii_case(set)));
+    assert_eq!(unused.notes.iter().filter(skipped).count(), 1, "{:?}", unused.notes);
+    read().use_sets(&[set]).expect_err("this set is wrong")
+}
+
 #[test]
 fn wrong_input_decks_are_placed() {
     let line =
         |error: &ReadError, expected| assert_eq!(error.place, Place::Line(expected), "{error}");
-    let error = deck("2, 1., 0., 0.", "2, 1., 0.");
-    assert!(matches!(error.problem, Problem::Truncated { .. }), "{error}");
-    line(&error, 5);
-    let error = deck("2, 1., 0., 0.", "2, 1., nan, 0.");
-    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+    for wrong in ["2, 1., nan, 0.", "2, 1., 1D, 0.", "2, 1., x, 0.", "2, 1., 1e999, 0.", "2, inf"] {
+        let error = deck("2, 1., 0., 0.", wrong);
+        assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+        line(&error, 5);
+    }
     let error = deck("7, 0., 0., 1.", "3, 0., 0., 1.");
     assert_eq!(error.problem, Problem::Duplicate { kind: "node", tag: 3 });
     line(&error, 7);
@@ -316,41 +329,124 @@ fn wrong_input_decks_are_placed() {
     assert!(matches!(error.problem, Problem::Truncated { .. }), "{error}");
     let error = deck("3, 7\n", "3, 3\n");
     assert_eq!(error.problem, Problem::RepeatedNode { element: 11, node: 3 });
-    let error = deck("C3D4", "C3D8");
-    assert!(matches!(error.problem, Problem::ElementType { .. }), "{error}");
-    line(&error, 9);
-    for (found, instead) in
-        [("C3D8", "mesh with tetrahedra"), ("C3D10H", "write C3D10:"), ("C3D4H", "write C3D4,")]
-    {
-        let said = deck("C3D4", found).to_string();
-        assert!(said.contains(&format!("{found} are not supported; {instead}")), "{said}");
+    for found in ["C3D8", "C3D20R", "C3D6", "SC6R"] {
+        let error = deck("C3D4", found);
+        assert!(matches!(error.problem, Problem::ElementType { .. }), "{error}");
+        line(&error, 9);
+        let said = error.to_string();
+        assert!(said.contains(&format!("{found} are not supported; mesh with tetra")), "{said}");
     }
+    let error = deck("C3D4", "S4");
+    assert!(matches!(error.problem, Problem::NoTetrahedra { .. }), "{error}");
+    assert!(!error.to_string().contains("Gmsh"), "{error}");
     let error =
         deck("*Nset, nset=base", "*Element, type=C3D10\n12,1,2,3,7,1,2,3,7,1,2\n*Nset, nset=base");
     assert_eq!(error.problem, Problem::MixedOrders { first: 4, this: 10 });
-    let error = deck("base, 7", "bas, 7");
-    assert_eq!(error.problem, Problem::UnknownSet { name: "bas".into() });
-    line(&error, 15);
-    let error = deck("base, 7", "base, 8");
-    let unknown = Problem::UnknownMember { set: "more".into(), kind: "node", tag: 8 };
-    assert_eq!(error.problem, unknown);
-    let error = deck("1, 3, 1", "1, 4000000000, 1");
-    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
-    let error = deck("1, 3, 1", "1, 3, 0");
-    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
-    // A set that names itself doubles with every line.
-    let doubling = format!("base, 7\n{}", "more, more\n".repeat(60));
-    let error = deck("base, 7", &doubling);
-    assert!(matches!(error.problem, Problem::TooManyMembers { .. }), "{error}");
-    let error = deck("body, S1", "body, S5");
-    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
     for (from, to) in [
         ("*Heading", "*Include, input=other.inp"),
+        ("*Heading", "*Node, input=other.inp"),
         ("*Heading", "*Part, name=a\n*End Part\n*Part, name=b"),
         ("*Heading", "*Instance, name=a, part=b\n1., 0., 0."),
+        ("*Node", "*Part, name=a\n*End Part\n*Assembly\n*Node"),
     ] {
         let error = deck(from, to);
         assert!(matches!(error.problem, Problem::Unsupported { .. }), "{error}");
+    }
+}
+
+#[test]
+fn wrong_sets_of_decks_are_placed_if_they_are_used() {
+    let at =
+        |error: &ReadError, expected| assert_eq!(error.place, Place::Line(expected), "{error}");
+    let error = fault_of("more", "base, 7", "bas, 7");
+    assert_eq!(error.problem, Problem::UnknownSet { name: "bas".into() });
+    at(&error, 15);
+    let error = fault_of("more", "nset=more", "nset=more, instance=p-1");
+    assert_eq!(error.problem, Problem::UnknownSet { name: "P-1".into() });
+    for wrong in ["1, 3, 0", "3, 1, 1", "1, a", "1, -3"] {
+        let error = fault_of("base", "1, 3, 1", wrong);
+        assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+        at(&error, 13);
+    }
+    let error = fault_of("floor", "body, S1", "body, S5");
+    assert!(matches!(error.problem, Problem::Number { .. }), "{error}");
+    at(&error, 19);
+    let error = fault_of("floor", "type=ELEMENT", "type=cutting surface");
+    assert!(matches!(error.problem, Problem::Unsupported { .. }), "{error}");
+    at(&error, 18);
+    let error = fault_of("more", "base, 7", "8, 9");
+    assert_eq!(error.problem, Problem::NoMembers { set: "more".into() });
+    at(&error, 14);
+    let error = fault_of(
+        "loose",
+        "*Surface, name=floor",
+        "*Element, type=S3, elset=loose\n12, 1, 2, 9\n*Surface, name=floor",
+    );
+    assert!(matches!(error.problem, Problem::LooseFace { .. }), "{error}");
+    at(&error, 18);
+    let error =
+        fault_of("a", "*Nset, nset=more", "*Nset, nset=a\nb\n*Nset, nset=b\na\n*Nset, nset=more");
+    assert!(matches!(error.problem, Problem::Circular { .. }), "{error}");
+    // A node set and a surface of one name and other nodes.
+    let error = fault_of("floor", "nset=more", "nset=Floor");
+    assert!(matches!(error.problem, Problem::TwoSets { .. }), "{error}");
+    // A name may be written in any case, and is then found.
+    let mut loaded = read_abaqus(DECK.as_bytes(), LengthUnit::Metre).unwrap();
+    loaded.use_sets(&["FLOOR", "Base", "more"]).unwrap();
+    assert_eq!(loaded.mesh.node_set("Base").unwrap(), [0, 1, 2]);
+    assert_eq!(loaded.mesh.surface_set("FLOOR").unwrap().len(), 1);
+}
+
+/// Members that the deck does not define are left out with a line of their own, however far a range goes.
+#[test]
+fn members_beyond_the_mesh_are_left_out() {
+    for (from, to, set, nodes) in [
+        ("base, 7", "base, 8, 9", "more", vec![0, 1, 2]),
+        ("1, 3, 1", "2, 4000000000, 1", "base", vec![1, 2, 3]),
+        ("1, 3, 1", "1, 18446744073709551615, 2", "base", vec![0, 2, 3]),
+    ] {
+        let text = DECK.replacen(from, to, 1);
+        let Loaded { mesh, notes, .. } = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap();
+        assert_eq!(mesh.node_set(set).unwrap(), nodes);
+        let noted = notes.iter().any(|note| {
+            matches!(note, Note::Missing { set, count: 2, first: 8, place: Place::Line(15), .. } if set == "more")
+        });
+        assert_eq!(noted, to.starts_with("base"), "{notes:?}");
+    }
+}
+
+/// A set that names itself is as it was; sets that repeat others use no memory without limit.
+#[test]
+fn sets_cannot_grow_without_limit() {
+    let doubling = DECK.replacen("base, 7", &format!("base, 7\n{}", "more, more\n".repeat(60)), 1);
+    let mesh = read_abaqus(doubling.as_bytes(), LengthUnit::Metre).unwrap().mesh;
+    assert_eq!(mesh.node_set("more").unwrap(), [0, 1, 2, 3]);
+    let nodes: String = (10..2000).map(|node| format!("{node}\n")).collect();
+    let sets: String = (0..500).map(|set| format!("*nset,nset={set}a\ne\n")).collect();
+    let text = format!("{}*node,nset=e\n{nodes}{sets}", DECK);
+    let error = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap_err();
+    assert!(matches!(error.problem, Problem::TooManyMembers { .. }), "{error}");
+    // A chain of sets is no stack without end.
+    let chain: String = (0..30_000).map(|i| format!("*nset,nset=c{i}\nc{}\n", i + 1)).collect();
+    let mut loaded = read_abaqus(format!("{DECK}{chain}").as_bytes(), LengthUnit::Metre).unwrap();
+    assert!(matches!(loaded.use_sets(&["c0"]).unwrap_err().problem, Problem::Circular { .. }));
+}
+
+/// Elements of another formulation on the same nodes.
+#[test]
+fn variants_of_tetrahedra_are_read_with_a_note() {
+    for found in ["C3D4H", "DC3D4", "c3d4t"] {
+        let text = DECK.replacen("C3D4", found, 1);
+        let notes = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().notes;
+        let note = Note::ReadAs { found: found.to_uppercase(), read: "C3D4" };
+        assert_eq!(notes.iter().filter(|other| **other == note).count(), 1, "{notes:?}");
+    }
+    let text = String::from_utf8(data("box_o2.inp")).unwrap();
+    for found in ["C3D10MH", "C3D10M", "C3D10H", "C3D10HS", "C3D10I"] {
+        let text = text.replace("type=C3D10", &format!("type={found}"));
+        assert!(text.contains(found));
+        let mesh = read_abaqus(text.as_bytes(), LengthUnit::Millimetre).unwrap().mesh;
+        assert_eq!(mesh, read("box_o2.inp").mesh, "{found}");
     }
 }
 
@@ -469,6 +565,7 @@ fn names_in_quotes_are_names() {
     let text = DECK
         .replace("nset=more", "nset=\"more nodes\"")
         .replace("nset=base,", "nset = \"base\" ,")
+        .replace("\nbase, 7", "\n\"base\", 7")
         .replace("name=floor", "name=\"floor\"");
     let mesh = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap().mesh;
     assert_eq!(mesh.node_set("more nodes").unwrap(), [0, 1, 2, 3]);

@@ -1,12 +1,13 @@
 //! Conversion from the file's numbers to a mesh: tags become indices, triangles become faces.
 
-use crate::mesh::error::MeshError;
 use crate::mesh::read::error::{Problem, ReadError};
 use crate::mesh::read::source::Source;
-use crate::mesh::read::{DeckMaterial, FileNumbers, LengthUnit, Loaded, Note, size_note};
+use crate::mesh::read::{
+    DeckMaterial, FileNumbers, LengthUnit, Loaded, Note, SetKind, Unusable, size_note,
+};
 use crate::mesh::tet_mesh::{Elements, Face, TetMesh};
 use crate::mesh::topology::sorted_faces;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// An element with the file's numbers, in this program's node order.
 struct RawTet {
@@ -26,6 +27,12 @@ pub enum RawFace {
     Free { element: u64 },
 }
 
+/// Members of a named surface, and its position in the file.
+pub struct RawSurface {
+    pub at: usize,
+    pub faces: Vec<RawFace>,
+}
+
 /// A numbered element that is not a tetrahedron.
 pub enum Numbered {
     Triangle([u64; 3]),
@@ -34,6 +41,8 @@ pub enum Numbered {
 
 /// Content of a file, collected while it is read.
 pub struct RawMesh {
+    /// Whether the file is an input deck, where a node set and a surface are two things.
+    deck: bool,
     /// Remaining number of set members: sets that contain sets could grow without limit.
     room: usize,
     nodes: Vec<[f64; 3]>,
@@ -43,9 +52,13 @@ pub struct RawMesh {
     nodes_per_element: usize,
     pub node_sets: BTreeMap<String, Vec<u64>>,
     pub element_sets: BTreeMap<String, Vec<u64>>,
-    pub surface_sets: BTreeMap<String, Vec<RawFace>>,
-    numbered: HashMap<u64, Numbered>,
+    pub surface_sets: BTreeMap<String, RawSurface>,
+    pub numbered: HashMap<u64, Numbered>,
+    /// Elements of a deck that do not describe the mesh.
+    pub skipped_elements: HashSet<u64>,
     ignored: BTreeMap<String, usize>,
+    unusable: Vec<Unusable>,
+    pub notes: Vec<Note>,
     /// Materials in the units of the file.
     pub materials: Vec<DeckMaterial>,
 }
@@ -54,10 +67,11 @@ impl RawMesh {
     /// An empty mesh of a file of this many bytes. A member of a set takes eight bytes in memory and
     /// at least two in the file, unless ranges and groups repeat it. The number of members is limited to a few
     /// repetitions of the whole file.
-    pub fn new(file_length: usize) -> RawMesh {
+    pub fn new(file_length: usize, deck: bool) -> RawMesh {
         const REPETITIONS: usize = 4;
         const ANY_FILE: usize = 10_000;
         RawMesh {
+            deck,
             room: file_length.saturating_mul(REPETITIONS).saturating_add(ANY_FILE),
             nodes: Vec::new(),
             node_index: HashMap::new(),
@@ -68,7 +82,10 @@ impl RawMesh {
             element_sets: BTreeMap::new(),
             surface_sets: BTreeMap::new(),
             numbered: HashMap::new(),
+            skipped_elements: HashSet::new(),
             ignored: BTreeMap::new(),
+            unusable: Vec::new(),
+            notes: Vec::new(),
             materials: Vec::new(),
         }
     }
@@ -105,33 +122,57 @@ impl RawMesh {
         Ok(())
     }
 
-    /// Moves triangles and lines of element sets to surface and node sets.
-    fn sort_numbered(&mut self) {
-        if self.numbered.is_empty() {
-            return;
+    /// Records a set that cannot be used.
+    pub fn skip_set(&mut self, name: &str, kind: SetKind, error: ReadError) {
+        let new = |last: &Unusable| last.name != name || last.kind != kind;
+        if self.unusable.last().is_none_or(new) {
+            self.unusable.push(Unusable { name: name.to_string(), kind, error });
         }
-        let mut emptied = Vec::new();
-        for (name, tags) in &mut self.element_sets {
-            let before = tags.len();
-            tags.retain(|tag| match self.numbered.get(tag) {
-                None => true,
-                Some(Numbered::Triangle(corners)) => {
-                    let set = self.surface_sets.entry(name.clone()).or_default();
-                    set.push(RawFace::Corners(*corners));
-                    false
+    }
+
+    /// Number of nodes, or of elements.
+    pub fn count(&self, elements: bool) -> u64 {
+        let of_elements = self.tet_index.len() + self.numbered.len();
+        (if elements { of_elements } else { self.node_index.len() }) as u64
+    }
+
+    /// Whether the file has this node, or this element.
+    pub fn has(&self, element: bool, tag: u64) -> bool {
+        match element {
+            true => self.tet_index.contains_key(&tag) || self.numbered.contains_key(&tag),
+            false => self.node_index.contains_key(&tag),
+        }
+    }
+
+    /// Nodes, or elements, of the file among first, last and step.
+    pub fn tags_in(&self, elements: bool, [first, last, step]: [u64; 3]) -> Vec<u64> {
+        if (last - first) / step <= self.count(elements) {
+            let range = (first..=last).step_by(usize::try_from(step).unwrap_or(usize::MAX));
+            return range.filter(|&tag| self.has(elements, tag)).collect();
+        }
+        let inside = |tag: &u64| (first..=last).contains(tag) && (tag - first) % step == 0;
+        match elements {
+            true => {
+                self.tet_index.keys().chain(self.numbered.keys()).copied().filter(inside).collect()
+            }
+            false => self.node_index.keys().copied().filter(inside).collect(),
+        }
+    }
+
+    /// Nodes of elements, with repetitions.
+    pub fn nodes_of_elements(&self, elements: &[u64]) -> Vec<u64> {
+        let mut nodes = Vec::new();
+        for tag in elements {
+            match (self.tet_index.get(tag), self.numbered.get(tag)) {
+                (Some(tet), _) => {
+                    nodes.extend(&self.tets[*tet as usize].nodes[..self.nodes_per_element]);
                 }
-                Some(Numbered::Line(ends)) => {
-                    self.node_sets.entry(name.clone()).or_default().extend(ends);
-                    false
-                }
-            });
-            if before > 0 && tags.is_empty() {
-                emptied.push(name.clone());
+                (None, Some(Numbered::Triangle(of))) => nodes.extend(of),
+                (None, Some(Numbered::Line(of))) => nodes.extend(of),
+                (None, None) => {}
             }
         }
-        for name in emptied {
-            self.element_sets.remove(&name);
-        }
+        nodes
     }
 
     pub fn add_node(
@@ -175,13 +216,16 @@ impl RawMesh {
         Ok(())
     }
 
-    /// Builds the mesh in metres, with all sets resolved.
+    /// Builds the mesh in metres, with all sets.
     pub fn finish(mut self, source: &Source, unit: LengthUnit) -> Result<Loaded, ReadError> {
         let end = |problem: Problem| source.error(problem);
         if self.tets.is_empty() {
-            return Err(end(MeshError::NoElements.into()));
+            let advice = match self.deck {
+                true => "the elements of a body are of type C3D4 or C3D10",
+                false => "in Gmsh, assign a physical group to the volume, or save all elements",
+            };
+            return Err(end(Problem::NoTetrahedra { advice }));
         }
-        self.sort_numbered();
         let factor = unit.in_metres();
         let nodes = self.nodes.iter().map(|place| place.map(|x| x * factor)).collect();
         let elements = match self.nodes_per_element {
@@ -195,10 +239,16 @@ impl RawMesh {
             mesh.element_sets.insert(name.clone(), indices);
         }
         let faces = if self.surface_sets.is_empty() { Vec::new() } else { sorted_faces(&mesh) };
-        for (name, members) in &self.surface_sets {
+        let mut unusable = std::mem::take(&mut self.unusable);
+        for (name, RawSurface { at, faces: members }) in &self.surface_sets {
             let mut set = Vec::new();
-            for &member in members {
-                self.resolve_face(name, member, &faces, &mut set).map_err(end)?;
+            let resolved = members
+                .iter()
+                .try_for_each(|member| self.resolve_face(name, *member, &faces, &mut set));
+            if let Err(problem) = resolved {
+                let (name, error) = (name.clone(), source.error_at(*at, problem));
+                unusable.push(Unusable { name, kind: SetKind::Surface, error });
+                continue;
             }
             set.sort_unstable();
             set.dedup();
@@ -207,13 +257,23 @@ impl RawMesh {
         }
         for (name, tags) in &self.node_sets {
             let indices = members(name, "node", tags, &self.node_index).map_err(end)?;
+            let of_faces = self.surface_sets.get(name).zip(mesh.node_sets.get(name));
+            if let Some((surface, nodes)) = of_faces
+                && self.deck
+                && *nodes != indices
+            {
+                let error = source.error_at(surface.at, Problem::TwoSets { set: name.clone() });
+                unusable.push(Unusable { name: name.clone(), kind: SetKind::Nodes, error });
+                mesh.node_sets.remove(name);
+                continue;
+            }
             let set = mesh.node_sets.entry(name.clone()).or_default();
             set.extend(indices);
             set.sort_unstable();
             set.dedup();
         }
         let ignored = self.ignored.into_iter().map(|(what, count)| Note::Ignored { what, count });
-        let notes = size_note(&mesh, unit).into_iter().chain(ignored).collect();
+        let notes = size_note(&mesh, unit).into_iter().chain(ignored).chain(self.notes).collect();
         let mut numbers = FileNumbers {
             nodes: vec![0; mesh.nodes.len()],
             elements: self.tets.iter().map(|tet| tet.tag).collect(),
@@ -228,7 +288,7 @@ impl RawMesh {
             ..material
         };
         let materials = self.materials.into_iter().map(in_si).collect();
-        Ok(Loaded { mesh, notes, numbers, materials })
+        Ok(Loaded { mesh, notes, numbers, materials, unusable, any_case: self.deck })
     }
 
     /// Elements by node indices, the first N nodes of each.

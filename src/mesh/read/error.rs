@@ -32,7 +32,7 @@ pub struct ReadError {
 pub enum Problem {
     #[error("the file is empty")]
     Empty,
-    #[error("this is not a {expected} file: it starts with {found:?}")]
+    #[error("this is not {expected} file: it starts with {found:?}")]
     OtherFormat { expected: &'static str, found: String },
     #[error("format version {found:?} is not supported; save the mesh as version 4.1 or 2.2")]
     Version { found: String },
@@ -50,7 +50,9 @@ pub enum Problem {
     Expected { expected: String, found: String },
     #[error("the file has no {section} section")]
     MissingSection { section: &'static str },
-    #[error("elements of type {found} are not supported; {}", replacement_of(found))]
+    #[error(
+        "elements of type {found} are not supported; mesh with tetrahedra of four or ten nodes"
+    )]
     ElementType { found: String },
     #[error(
         "elements with {this} nodes here and {first} nodes before; a mesh has elements of one order only"
@@ -68,23 +70,22 @@ pub enum Problem {
         "the sets have more members than a file of {length} bytes can define; check for repeated ranges or groups"
     )]
     TooManyMembers { length: usize },
-    #[error("set \"{name}\" is used before it is defined")]
+    #[error("the file has no set or instance \"{name}\"")]
     UnknownSet { name: String },
+    #[error("set \"{set}\" has no member in the mesh")]
+    NoMembers { set: String },
+    #[error("set \"{set}\" contains itself, or sets within each other too many times")]
+    Circular { set: String },
+    #[error(
+        "\"{set}\" is the name of two sets with different nodes (*NSET, *ELSET or *SURFACE); rename one of them"
+    )]
+    TwoSets { set: String },
+    #[error("the file has no tetrahedra; {advice}")]
+    NoTetrahedra { advice: &'static str },
     #[error("set \"{set}\" has a face with nodes {nodes:?} that is not a side of a tetrahedron")]
     LooseFace { set: String, nodes: [u64; 3] },
     #[error("{what} is not supported; {hint}")]
     Unsupported { what: String, hint: &'static str },
     #[error(transparent)]
     Mesh(#[from] MeshError),
-}
-
-/// Supported replacement of an element type.
-fn replacement_of(found: &str) -> &'static str {
-    match found.trim_end_matches(['H', 'M', 'T', 'E']) {
-        "C3D10" => {
-            "write C3D10: ten-node elements here do not lock with nearly incompressible rubber"
-        }
-        "C3D4" => "write C3D4, or ten-node elements for rubber",
-        _ => "mesh with tetrahedra of four or ten nodes",
-    }
 }

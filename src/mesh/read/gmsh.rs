@@ -1,14 +1,14 @@
-//! Reader of Gmsh's `.msh`: header, names of physical groups, supported elements.
+//! Reader of Gmsh's `.msh`: header, names of physical groups, supported elements. Quadrangles are skipped and reported.
 //!
 //! Physical volumes become element sets, surfaces become surface sets with their nodes, curves
 //! and points become node sets. A group without a name is named `physical_<dimension>_<tag>`.
 
 use crate::mesh::TetMesh;
 use crate::mesh::node_order::swap_gmsh;
-use crate::mesh::read::assemble::{RawFace, RawMesh};
+use crate::mesh::read::assemble::{RawFace, RawMesh, RawSurface};
 use crate::mesh::read::error::{Problem, ReadError};
-use crate::mesh::read::source::{Coding, Source, excerpt};
-use crate::mesh::read::{LengthUnit, Loaded, Note, gmsh2, gmsh4};
+use crate::mesh::read::source::{Coding, Source, decode, excerpt};
+use crate::mesh::read::{LengthUnit, Loaded, Note, SetKind, gmsh2, gmsh4};
 use std::collections::HashMap;
 
 #[derive(Default)]
@@ -21,7 +21,7 @@ impl Names {
     }
 }
 
-/// Reads a `.msh` file of version 4.1 or 2.2, text or binary.
+/// Reads a `.msh` file of version 4.1 or 2 to 2.2, text or binary.
 ///
 /// # Errors
 /// [`ReadError`] with the line, or in binary data the byte, of the error.
@@ -30,14 +30,10 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
     if bytes.trim_ascii().is_empty() {
         return Err(source.error(Problem::Empty));
     }
-    let first = source.full_line().unwrap_or_default();
-    if first != b"$MeshFormat" {
-        let found = excerpt(first);
-        return Err(source.error_at(0, Problem::OtherFormat { expected: "Gmsh .msh", found }));
-    }
+    find_header(&mut source)?;
     let (version, coding) = header(&mut source)?;
     let mut names = Names::default();
-    let mut raw = RawMesh::new(bytes.len());
+    let mut raw = RawMesh::new(bytes.len(), false);
     let mut entities = gmsh4::Entities::default();
     let (mut nodes_seen, mut elements_seen) = (false, false);
     while let Some(line) = source.full_line() {
@@ -63,8 +59,9 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
                 in_coding(&mut source, coding, read)?;
                 elements_seen = true;
             }
-            (b"Nodes", Version::V22) => {
-                gmsh2::nodes(&mut source, coding, &mut raw)?;
+            (b"Nodes" | b"ParametricNodes", Version::V22) => {
+                let parametric = section != b"Nodes";
+                gmsh2::nodes(&mut source, coding, parametric, &mut raw)?;
                 nodes_seen = true;
             }
             (b"Elements", Version::V22) => {
@@ -103,6 +100,7 @@ pub fn read_gmsh(bytes: &[u8], unit: LengthUnit) -> Result<Loaded, ReadError> {
             return Err(source.error(Problem::MissingSection { section }));
         }
     }
+    source.coding = coding;
     let mut loaded = raw.finish(&source, unit)?;
     let names = volumes(&loaded.mesh);
     if names.len() > 1 {
@@ -147,6 +145,21 @@ enum Version {
     V41,
 }
 
+/// Skips comments before the header.
+fn find_header(source: &mut Source) -> Result<(), ReadError> {
+    let first = source.from(source.position()).full_line().unwrap_or_default();
+    while let Some(line) = source.full_line() {
+        if line == b"$MeshFormat" {
+            return Ok(());
+        }
+    }
+    if first == b"$NOD" {
+        return Err(source.error_at(0, Problem::Version { found: "1".into() }));
+    }
+    let found = excerpt(first);
+    Err(source.error_at(0, Problem::OtherFormat { expected: "a Gmsh .msh", found }))
+}
+
 fn header(source: &mut Source) -> Result<(Version, Coding), ReadError> {
     let start = source.position();
     let line = source.full_line().unwrap_or_default();
@@ -158,7 +171,7 @@ fn header(source: &mut Source) -> Result<(Version, Coding), ReadError> {
     let word = |index: usize| words.get(index).map(String::as_str).unwrap_or_default();
     let version = match word(0) {
         "4.1" => Version::V41,
-        "2.2" => Version::V22,
+        "2" | "2.0" | "2.1" | "2.2" => Version::V22,
         "" => return Err(source.error(Problem::Truncated { what: "section $MeshFormat".into() })),
         other => return Err(source.error_at(start, Problem::Version { found: other.into() })),
     };
@@ -208,9 +221,9 @@ fn physical_names(source: &mut Source) -> Result<Names, ReadError> {
         let dimension = source.text_number("a dimension")?;
         let tag = source.text_number("the number of a group")?;
         let start = source.position();
-        let line = String::from_utf8_lossy(source.line().unwrap_or_default()).into_owned();
-        let name = line.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
-        let Some(name) = name else {
+        let line = decode(source.line().unwrap_or_default());
+        let name = line.strip_prefix('"').and_then(|rest| rest.split_once('"'));
+        let Some((name, _)) = name else {
             let problem = Problem::Number { found: line, what: "a name in quotes" };
             return Err(source.error_at(start, problem));
         };
@@ -224,6 +237,7 @@ pub(super) enum Kind {
     Point,
     Line,
     Triangle,
+    Quadrangle,
     Tet,
 }
 
@@ -235,11 +249,13 @@ pub(super) fn kind(source: &Source, at: usize, code: i64) -> Result<(Kind, usize
         8 => Ok((Kind::Line, 3)),
         2 => Ok((Kind::Triangle, 3)),
         9 => Ok((Kind::Triangle, 6)),
+        3 => Ok((Kind::Quadrangle, 4)),
+        10 => Ok((Kind::Quadrangle, 9)),
+        16 => Ok((Kind::Quadrangle, 8)),
         4 => Ok((Kind::Tet, 4)),
         11 => Ok((Kind::Tet, 10)),
         other => {
             let name = match other {
-                3 | 10 | 16 => "quadrangle",
                 5 | 12 | 17 => "hexahedron",
                 6 | 13 | 18 => "prism",
                 7 | 14 | 19 => "pyramid",
@@ -272,7 +288,17 @@ pub(super) fn place_element(
         Kind::Triangle => {
             let corners = RawFace::Corners([nodes[0], nodes[1], nodes[2]]);
             for group in groups {
-                raw.surface_sets.entry(group.clone()).or_default().push(corners);
+                let surface = RawSurface { at, faces: Vec::new() };
+                raw.surface_sets.entry(group.clone()).or_insert(surface).faces.push(corners);
+            }
+        }
+        Kind::Quadrangle => {
+            raw.ignore("a quadrangle".into());
+            for group in groups {
+                let what = format!("a quadrangle in \"{group}\"");
+                let hint = "mesh the surface with triangles";
+                let error = source.error_at(at, Problem::Unsupported { what, hint });
+                raw.skip_set(group, SetKind::Nodes, error);
             }
         }
         Kind::Tet => {

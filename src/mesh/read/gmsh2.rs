@@ -25,6 +25,7 @@ fn tag(source: &mut Source, what: &'static str) -> Result<u64, ReadError> {
 pub(super) fn nodes(
     source: &mut Source,
     coding: Coding,
+    parametric: bool,
     raw: &mut RawMesh,
 ) -> Result<(), ReadError> {
     let total = count(source, "nodes")?;
@@ -35,6 +36,14 @@ pub(super) fn nodes(
             let mut place = [0.0; 3];
             for x in &mut place {
                 *x = source.double("a coordinate")?;
+            }
+            if parametric {
+                // The entity, and the place on a curve or surface.
+                let dimension = source.int("a dimension")?;
+                source.int("the number of an entity")?;
+                for _ in 0..if matches!(dimension, 1 | 2) { dimension } else { 0 } {
+                    source.double("a parameter")?;
+                }
             }
             raw.add_node(source, at, tag, place)?;
         }
@@ -118,7 +127,7 @@ impl Groups<'_> {
         let dimension = match kind {
             Kind::Point => 0,
             Kind::Line => 1,
-            Kind::Triangle => 2,
+            Kind::Triangle | Kind::Quadrangle => 2,
             Kind::Tet => 3,
         };
         let groups: Vec<String> =

@@ -6,13 +6,17 @@
 //! Existing crates for these formats read one version only, or no physical groups,
 //! and none reports the position of an error.
 pub mod abaqus;
+mod abaqus_elements;
 mod abaqus_lines;
+mod abaqus_members;
+mod abaqus_sets;
 mod assemble;
 mod error;
 pub mod gmsh;
 mod gmsh2;
 mod gmsh4;
 mod source;
+mod used;
 
 pub use abaqus::read_abaqus;
 pub use error::{Place, Problem, ReadError};
@@ -53,6 +57,26 @@ pub struct Loaded {
     pub numbers: FileNumbers,
     /// Materials of an input deck, in its order; the mesh does not use them.
     pub materials: Vec<DeckMaterial>,
+    /// Sets of the file that are not in the mesh.
+    pub unusable: Vec<Unusable>,
+    /// Whether labels are equal if they differ in case alone.
+    pub any_case: bool,
+}
+
+/// Kinds of sets, in the order in which a name is looked up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SetKind {
+    Nodes,
+    Surface,
+    Elements,
+}
+
+/// A set that cannot be used, with the reason.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unusable {
+    pub name: String,
+    pub kind: SetKind,
+    pub error: ReadError,
 }
 
 /// A material of an input deck, in SI units. Its numbers are assumed to be in the consistent system with the file's
@@ -64,6 +88,8 @@ pub struct DeckMaterial {
     pub elastic: Option<[f64; 2]>,
     /// Density, kg/m³.
     pub density: Option<f64>,
+    /// First constants that are not read: `*HYPERELASTIC, NEO HOOKE`.
+    pub unread: Option<String>,
 }
 
 /// The file's numbers in the order of the mesh: Gmsh's tags, Abaqus' labels.
@@ -80,8 +106,14 @@ pub enum Note {
     UnlikelySize { size: f64, unit: LengthUnit },
     /// Groups of elements that may be intended as bodies of different materials.
     SeveralVolumes { names: Vec<String> },
-    /// A keyword or section that does not describe the mesh.
+    /// A keyword, section or kind of element that does not describe the mesh.
     Ignored { what: String, count: usize },
+    /// Elements of another formulation on the same nodes.
+    ReadAs { found: String, read: &'static str },
+    /// Members of a set that the file does not define.
+    Missing { set: String, kind: &'static str, count: usize, first: u64, place: Place },
+    /// Sets that cannot be used, and that the scene does not use.
+    SetsSkipped { names: Vec<String>, error: ReadError },
 }
 
 impl fmt::Display for Note {
@@ -104,6 +136,22 @@ impl fmt::Display for Note {
                 names.join(", ")
             ),
             Note::Ignored { what, count } => write!(f, "{what} was skipped ({count} times)"),
+            Note::ReadAs { found, read } => {
+                write!(f, "elements of type {found} are read as {read}")
+            }
+            Note::Missing { set, kind, count, first, place } => write!(
+                f,
+                "set \"{set}\" has {count} members that the file does not define (first: {kind} {first}, {place}); they are \
+                 left out"
+            ),
+            Note::SetsSkipped { names, error } => match names.len() {
+                1 => write!(f, "set \"{}\" was skipped: {error}", names[0]),
+                count => {
+                    let first: Vec<&str> = names.iter().take(3).map(String::as_str).collect();
+                    let (all, more) = (first.join("\", \""), if count > 3 { ", …" } else { "" });
+                    write!(f, "{count} sets were skipped (\"{all}\"{more}); the first: {error}")
+                }
+            },
         }
     }
 }

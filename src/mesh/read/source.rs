@@ -1,6 +1,7 @@
 //! Bytes of a file, read as lines, words or binary numbers, with positions for messages.
 
 use crate::mesh::read::error::{Place, Problem, ReadError};
+use std::cell::OnceCell;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
@@ -13,6 +14,8 @@ pub struct Source<'a> {
     bytes: &'a [u8],
     at: usize,
     pub coding: Coding,
+    /// Positions of line ends, found for the first message.
+    line_ends: OnceCell<Vec<usize>>,
 }
 
 /// Start of a text from a file, short enough for a one-line message.
@@ -20,6 +23,17 @@ pub fn excerpt(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]).into_owned()
 }
+
+/// A text of a file: UTF-8, else Latin-1, as some programs write names.
+pub fn decode(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_string(),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
+    }
+}
+
+/// Mark of UTF-8 at the start of a file, which is passed over.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 pub fn count_of(what: &str) -> &'static str {
     match what {
@@ -30,7 +44,13 @@ pub fn count_of(what: &str) -> &'static str {
 
 impl<'a> Source<'a> {
     pub fn new(bytes: &'a [u8]) -> Source<'a> {
-        Source { bytes, at: 0, coding: Coding::Text }
+        let at = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+        Source { bytes, at, coding: Coding::Text, line_ends: OnceCell::new() }
+    }
+
+    /// The same file from another position.
+    pub fn from(&self, at: usize) -> Source<'a> {
+        Source { at, coding: self.coding, ..Source::new(self.bytes) }
     }
 
     pub fn position(&self) -> usize {
@@ -49,8 +69,10 @@ impl<'a> Source<'a> {
     pub fn place(&self, at: usize) -> Place {
         match self.coding {
             Coding::Text => {
-                let before = &self.bytes[..at.min(self.bytes.len())];
-                Place::Line(1 + before.iter().filter(|&&byte| byte == b'\n').count())
+                let ends = self.line_ends.get_or_init(|| {
+                    (0..self.bytes.len()).filter(|&at| self.bytes[at] == b'\n').collect()
+                });
+                Place::Line(1 + ends.partition_point(|&end| end < at))
             }
             _ => Place::Byte(at),
         }

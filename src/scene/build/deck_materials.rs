@@ -1,10 +1,10 @@
 //! Materials of an input deck compared with that of the scene.
 
-use crate::mesh::read::DeckMaterial;
+use crate::mesh::read::{DeckMaterial, LengthUnit};
 use crate::numeric::clock::to_digits;
 use crate::scene::build::solid::SolidSetupError;
 use crate::scene::build::solid_mesh::BuiltMesh;
-use crate::scene::resolve::solid_scene::SolidScene;
+use crate::scene::resolve::solid_scene::{MeshSource, SolidScene};
 
 /// Compares materials of a deck with that of the scene: notes for differences, an error if the scene has only defaults
 /// for values of the deck.
@@ -20,10 +20,24 @@ pub(crate) fn deck_materials(
         ["youngs_modulus", "poisson_ratio", "density"].map(defaulted);
     // Within the digits of usual moduli.
     let differ = |a: f64, b: f64| (a - b).abs() > 1e-3 * b.abs();
-    let given: Vec<&DeckMaterial> =
-        built.materials.iter().filter(|m| m.elastic.is_some() || m.density.is_some()).collect();
+    let known =
+        |m: &&DeckMaterial| m.elastic.is_some() || m.density.is_some() || m.unread.is_some();
+    let given: Vec<&DeckMaterial> = built.materials.iter().filter(known).collect();
     let mut notes = Vec::new();
     for material in &given {
+        if let Some(law) = unread(material) {
+            let names = [(no_young, "youngs_modulus"), (no_poisson, "poisson_ratio")];
+            let density = (no_density && law.starts_with("*DENSITY"), "density");
+            let missing: Vec<_> =
+                names.into_iter().chain([density]).filter(|(no, _)| *no).collect();
+            let (name, law) = (material.name.clone(), law.to_string());
+            if !missing.is_empty() {
+                let missing = missing.into_iter().map(|(_, name)| name).collect();
+                return Err(SolidSetupError::DeckLaw { name, law, missing });
+            }
+            notes.push(format!("the scene's material is used, not the deck's \"{name}\" ({law})"));
+            continue;
+        }
         let [young, poisson] = material.elastic.unwrap_or(elastic);
         let density = material.density.unwrap_or(scene.density);
         // Values of the deck and of the scene; whether the scene has only steel's; name and text.
@@ -34,18 +48,34 @@ pub(crate) fn deck_materials(
         ];
         let differing = parts.iter().filter(|(deck, scene, ..)| differ(*deck, *scene));
         let missing: Vec<_> = differing.clone().filter(|(_, _, no, ..)| *no).collect();
+        let other = other_unit(scene, material);
+        let units = match &other {
+            Some((unit, value)) => {
+                format!("with unit = \"{unit}\" the {value}: check solid.mesh.unit")
+            }
+            None => "if its units fit solid.mesh.unit".to_string(),
+        };
         let deck = format!(
-            "\"{}\": Young's modulus {}, Poisson's ratio {poisson}, density {}, if its units fit solid.mesh.unit",
+            "\"{}\": Young's modulus {}, Poisson's ratio {poisson}, density {}, {units}",
             material.name,
             gigapascals(young),
             kilograms(density)
         );
         if !missing.is_empty() {
-            let write = format!(
-                "material = {{ youngs_modulus = \"{}\", poisson_ratio = {poisson}, density = \"{}\" }}",
-                gigapascals(young),
-                kilograms(density)
+            // A value that a scene may not have, or that a wrong unit made, is not proposed.
+            let proposed = |value: f64, range: Range, text: String| {
+                let fits = other.is_none() && range.contains(&value);
+                if fits { text } else { "…".to_string() }
+            };
+            let mut write = format!(
+                "write the values you want in [solid]: material = {{ youngs_modulus = {}, poisson_ratio = {}, density = {} }}",
+                proposed(young, 1e3..=1e13, format!("\"{}\"", gigapascals(young))),
+                proposed(poisson, -0.999..=0.499, poisson.to_string()),
+                proposed(density, 1.0..=3e4, format!("\"{}\"", kilograms(density))),
             );
+            if let Some((unit, _)) = &other {
+                write = format!("correct solid.mesh.unit to \"{unit}\", or {write}");
+            }
             let steel: Vec<_> = missing
                 .iter()
                 .map(|(_, of, _, name, text)| format!("{name} {}", text(*of)))
@@ -78,6 +108,36 @@ pub(crate) fn deck_materials(
     }
     Ok(notes)
 }
+
+/// Constants of a material that are not read, if they determine what the scene does not give.
+fn unread(material: &DeckMaterial) -> Option<&str> {
+    let law = material.unread.as_deref()?;
+    (material.elastic.is_none() || law.starts_with("*DENSITY")).then_some(law)
+}
+
+/// The other unit of length, and a constant with it, if that is usual for a solid and the one with the scene's unit is not.
+fn other_unit(scene: &SolidScene, material: &DeckMaterial) -> Option<(&'static str, String)> {
+    let MeshSource::File { unit, .. } = &scene.mesh.source else { return None };
+    let (other, factor) = match unit {
+        LengthUnit::Millimetre => ("m", 1e-6),
+        LengthUnit::Metre => ("mm", 1e6),
+    };
+    // Rubber and foam are possible, but not the reason to suspect the unit.
+    let mistaken = |value: f64, usual: Range, possible: Range, factor: f64| {
+        (usual.contains(&(factor * value)) && !possible.contains(&value)).then_some(factor * value)
+    };
+    let modulus =
+        material.elastic.and_then(|[young, _]| mistaken(young, 1e9..=1.3e12, 1e6..=1.3e12, factor));
+    let density =
+        material.density.and_then(|of| mistaken(of, 10.0..=3e4, 1.0..=3e4, factor * factor));
+    match (modulus, density) {
+        (Some(young), _) => Some((other, format!("modulus is {}", gigapascals(young)))),
+        (None, Some(density)) => Some((other, format!("density is {}", kilograms(density)))),
+        (None, None) => None,
+    }
+}
+
+type Range = std::ops::RangeInclusive<f64>;
 
 fn gigapascals(value: f64) -> String {
     format!("{} GPa", to_digits(1e-9 * value, 6))

@@ -50,11 +50,17 @@ pub enum SolidSetupError {
     VibratesFreely { set: String, axis: &'static str },
     #[error(
         "solid.material: the mesh file has a material ({deck}), which this program does not read. The scene \
-         gives no {}, so that steel would be used in {} place: {steel}. Hint: write the values you want in \
-         [solid]: {write}",
+         gives no {}, so that steel would be used in {} place: {steel}. Hint: {write}",
         missing.join(" and no "), if missing.len() == 1 { "its" } else { "their" }
     )]
     DeckMaterial { deck: String, missing: Vec<&'static str>, steel: String, write: String },
+    #[error(
+        "solid.material: the mesh file has a material \"{name}\" with {law}, which this program does not read. The scene \
+         gives no {}, so that steel would be used in its place. Hint: write the values you want in [solid]: material = \
+         {{ youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7850 kg/m^3\" }} is steel",
+        missing.join(" and no ")
+    )]
+    DeckLaw { name: String, law: String, missing: Vec<&'static str> },
     #[error("{part}.set: no set is called \"{set}\"; there are: {}", list(known))]
     NoSuchSet { part: &'static str, index: usize, set: String, known: Vec<String> },
     #[error("{part}.set: set \"{set}\" has no nodes")]
@@ -101,9 +107,9 @@ pub enum SolidSetupError {
 impl SolidSetupError {
     pub fn about(&self) -> About {
         match *self {
-            SolidSetupError::Material(_) | SolidSetupError::DeckMaterial { .. } => {
-                About::key("solid.material")
-            }
+            SolidSetupError::Material(_)
+            | SolidSetupError::DeckMaterial { .. }
+            | SolidSetupError::DeckLaw { .. } => About::key("solid.material"),
             SolidSetupError::OtherLaw => About::key("solid.material.law"),
             SolidSetupError::Rubber(_) => About::key("solid"),
             SolidSetupError::FourNodes => About::key("solid.mesh.file"),

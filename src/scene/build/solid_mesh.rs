@@ -47,6 +47,11 @@ pub enum SolidMeshError {
     Faults { path: PathBuf, faults: Faults },
     #[error("{}: {source}", path.display())]
     Mesh { path: PathBuf, source: MeshError },
+    #[error(
+        "{}: no node of set \"{name}\", which the scene uses, belongs to an element; name a set on the body",
+        path.display()
+    )]
+    EmptiedSet { path: PathBuf, name: String },
     #[error("{key}: {source}")]
     Made { key: String, source: MeshError },
     #[error(
@@ -77,6 +82,7 @@ impl SolidMeshError {
         Some(match self {
             SolidMeshError::Read { .. }
             | SolidMeshError::Faults { .. }
+            | SolidMeshError::EmptiedSet { .. }
             | SolidMeshError::Mesh { .. } => return None,
             SolidMeshError::File { .. } => About::key("solid.mesh.file"),
             SolidMeshError::Made { key, .. } => About::key(key),
@@ -146,8 +152,10 @@ fn build_around(
                 "inp" => read_abaqus(&bytes, *unit),
                 _ => read_gmsh(&bytes, *unit),
             };
-            let mut loaded =
-                loaded.map_err(|source| SolidMeshError::Read { path: path.clone(), source })?;
+            let read = |source| SolidMeshError::Read { path: path.clone(), source };
+            let mut loaded = loaded.map_err(read)?;
+            let used = used_sets(request, bore);
+            loaded.use_sets(&used).map_err(read)?;
             request.place.put(&mut loaded.mesh.nodes);
             notes.extend(loaded.notes.iter().map(ToString::to_string));
             materials = loaded.materials;
@@ -159,8 +167,9 @@ fn build_around(
             };
             let places = loaded.mesh.nodes.clone();
             labels.elements = loaded.numbers.elements;
-            let (mesh, done) = repair(loaded.mesh, &wanted)
+            let (mut mesh, done) = repair(loaded.mesh, &wanted)
                 .map_err(|error| in_mesh(path, named_in_file(error, &labels)))?;
+            notes.extend(without_emptied_sets(&mut mesh, &used, path)?);
             repaired = done;
             labels.nodes = labels_of_nodes(&mesh, &places, &loaded.numbers.nodes);
             check(&mesh, &limits).map_err(|faults| {
@@ -215,6 +224,38 @@ fn build_around(
         false => (mesh, labels),
     };
     Ok(BuiltMesh { quality: quality(&mesh), mesh, labels, repaired, moved_back, notes, materials })
+}
+
+/// Names of the file's sets that the scene uses.
+fn used_sets<'r>(request: &'r MeshRequest, bore: Option<&'r BorePlace>) -> Vec<&'r str> {
+    let names =
+        request.used_sets.iter().map(String::as_str).chain(bore.map(|bore| bore.set.as_str()));
+    names.filter(|name| request.sets.iter().all(|set| set.name != *name)).collect()
+}
+
+/// Takes away node sets that a repair has emptied: their nodes belonged to no element.
+fn without_emptied_sets(
+    mesh: &mut TetMesh,
+    used: &[&str],
+    path: &Path,
+) -> Result<Option<String>, SolidMeshError> {
+    let empty: Vec<String> = mesh
+        .node_sets
+        .iter()
+        .filter(|(_, set)| set.is_empty())
+        .map(|(name, _)| name.clone())
+        .collect();
+    if let Some(name) = empty.iter().find(|name| used.contains(&name.as_str())) {
+        return Err(SolidMeshError::EmptiedSet { path: path.to_path_buf(), name: name.clone() });
+    }
+    mesh.node_sets.retain(|_, set| !set.is_empty());
+    let note = || {
+        format!(
+            "no node of these sets belongs to an element, and they were dropped: {}",
+            empty.join(", ")
+        )
+    };
+    Ok((!empty.is_empty()).then(note))
 }
 
 fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {

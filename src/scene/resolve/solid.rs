@@ -303,7 +303,20 @@ fn mesh_request(reader: &mut Reader) -> Result<MeshRequest, SceneError> {
         cavities,
         largest_aspect: reader.number("solid.mesh.largest_aspect").unwrap_or(1e3),
         sets: document.items("solid.set").map(set).collect::<Result<_, _>>()?,
+        used_sets: used_sets(document),
     })
+}
+
+fn used_sets(document: &Document) -> Vec<String> {
+    let tables = ["solid.fixed", "solid.load", "solid.probe"];
+    let of_tables = tables.into_iter().flat_map(|table| document.items(table));
+    let of_tables = of_tables.map(|item| item.value("set"));
+    let names = of_tables.chain([document.value("solid.harmonic.set")]).flatten();
+    let text = |value: &Checked| match value {
+        Checked::Text(name) => Some(name.clone()),
+        _ => None,
+    };
+    names.filter_map(text).collect()
 }
 
 fn set(item: ItemRef) -> Result<SetRequest, SceneError> {

@@ -92,6 +92,8 @@ pub struct MeshRequest {
     pub cavities: usize,
     pub largest_aspect: f64,
     pub sets: Vec<SetRequest>,
+    /// Names of sets in supports, loads, probes and vibrations.
+    pub used_sets: Vec<String>,
 }
 
 impl MeshRequest {

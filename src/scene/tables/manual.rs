@@ -288,9 +288,10 @@ equilibrium moves: balls roll without slip on the pitch circle, and traction, if
 A scene with `[solid]` instead of `[bearing]` is input of `check`, `plan`, `statics`, `modes` and `run`; its results are described
 in [results.md](results.md).
 
-**Mesh files.** Physical groups of Gmsh and node, element and surface sets of Abaqus keep their names. The unit of length
-must be given. A mesh with faults (inverted elements, slivers, coincident nodes, cavities, loose parts) is refused with
-their number and the worst position.
+**Mesh files.** Physical groups of Gmsh and node, element and surface sets of Abaqus keep their names. In a deck with a part and an
+instance, a set of the part is `instance.set`; the case of letters does not count in names of a deck. A set that cannot be read is skipped
+with a note, and refused with its line if the scene uses it. The unit of length must be given. A mesh with faults (inverted elements,
+slivers, coincident nodes, cavities, loose parts) is refused with their number and the worst position.
 
 **Supports and loads.** A node may belong to two fixed sets if both prescribe the same displacement. A force on a surface is distributed in
 proportion to the area of each node, on other sets evenly. Loads keep their directions; pressure acts on the

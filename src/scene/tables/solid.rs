@@ -97,7 +97,7 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("solid.harmonic.axis", Kind::Choice(AXES), Depends("required with `[solid.harmonic]`"), "Axis of the set's motion."),
 
     Key::new("solid.mesh.file", Kind::Text, Depends("required without `generate`"),
-        "Mesh file, relative to the scene: Gmsh `.msh` (4.1 or 2.2, text or binary) or Abaqus `.inp` (C3D4, C3D10).").group("mesh"),
+        "Mesh file, relative to the scene: Gmsh `.msh` (4.1, or 2.0 to 2.2, text or binary) or Abaqus `.inp` (C3D4, C3D10).").group("mesh"),
     Key::new("solid.mesh.generate", Kind::Choice(GENERATORS), Depends("required without `file`"),
         "Mesh generator; its dimensions are listed under [Generated meshes](#generated-meshes).").group("mesh"),
     Key::new("solid.mesh.unit", Kind::Choice(LENGTH_UNITS), Depends("required with `file`"),
