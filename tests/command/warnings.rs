@@ -214,6 +214,19 @@ fn a_bushing_through_its_wall_is_refused() {
     }
 }
 
+/// Three loose balls under next to no load: not every position of theirs has an equilibrium that is found.
+#[test]
+fn of_pictures() {
+    let loose = |load: &str| {
+        format!(
+            "[bearing]\nkind = \"deep-groove\"\nballs = 3\npitch_radius = \"19.25 mm\"\nclearance = {{ radial = \"20 um\" }}\n\
+             inner_race = {{ conformity = 0.515 }}\nouter_race = {{ conformity = 0.525 }}\n\
+             ball = {{ diameter = \"7.938 mm\" }}\n[inner_race]\nz = {{ load = \"{load}\" }}\n"
+        )
+    };
+    assert_raised("W18", "statics", &loose("-1e-4 N"), &loose("-100 N"));
+}
+
 #[test]
 fn of_modes() {
     let rotor = |below: &str| {
