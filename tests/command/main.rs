@@ -44,6 +44,7 @@ mod housed_starts;
 mod housing_meshes;
 mod modes_of_housings;
 mod plan_words;
+mod rating_life;
 mod rubber_command;
 mod rubber_limits;
 mod run_command;
