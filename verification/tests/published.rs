@@ -310,6 +310,8 @@ const TYPED: &[(&str, f64, &str)] = &[
         "217 of 255: a colour, not a damping ratio of Table 3.3",
     ),
     ("src/surface_picture.rs", 0.132, "132 of 255: a colour, not a damping ratio of Table 3.3"),
+    ("outside_bearings/case.rs", 1.0, "ones of formulas, not coefficients of a circular contact"),
+    ("outside_bearings/oracle.rs", 1.0, "ones of formulas, not coefficients of a circular contact"),
     (
         "src/bushings.rs",
         2.42e6,
