@@ -76,6 +76,9 @@ fn bearing(scene: &Scene) -> Echo {
     if let Some(value) = sizes.length {
         echo["length"] = length(value)?;
     }
+    if let Some(rating) = scene.dynamic_rating {
+        echo["rating"]["dynamic"] = quantity("dynamic", rating, "N")?;
+    }
     if let Some(given) = &scene.cage {
         echo["cage"] = cage(given)?;
     }

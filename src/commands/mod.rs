@@ -9,6 +9,7 @@ pub mod compare;
 pub mod earlier;
 pub mod echo;
 pub mod echo_run;
+mod life;
 pub mod memory;
 pub mod modes;
 pub mod pack;

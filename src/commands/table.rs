@@ -9,8 +9,13 @@ use bearing_dynamics::output::warnings::{Warning, lines};
 use nalgebra::SMatrix;
 use std::fmt::Write;
 
-/// Position, reactions, stiffness, balls, lines on the `housing`, and warnings.
-pub fn render(solution: &StaticSolution, housing: &str, warnings: &[Warning]) -> String {
+/// Position, reactions, stiffness, balls, `life`, lines on the `housing`, and warnings.
+pub fn render(
+    solution: &StaticSolution,
+    life: &str,
+    housing: &str,
+    warnings: &[Warning],
+) -> String {
     let mut text = String::new();
     race(&mut text, solution);
     text += if housing.is_empty() { "" } else { "\nbearing, from race to race" };
@@ -23,6 +28,7 @@ pub fn render(solution: &StaticSolution, housing: &str, warnings: &[Warning]) ->
         solution.balls.len(),
         fixed(extent.to_degrees(), 3)
     );
+    text += life;
     let _ = writeln!(
         text,
         "{} iterations, {} ball-race evaluations, unbalanced load {:.1e} N",
@@ -39,10 +45,11 @@ pub fn ground_stiffness(matrix: &SMatrix<f64, 5, 5>) -> String {
     text
 }
 
-/// [`render`] for several bodies and bearings; `names` are those of the bearings, `housings` the lines on housings.
+/// [`render`] for several bodies and bearings; each bearing has its name and the line of its life, `housings` are the lines on
+/// housings.
 pub fn render_assembly(
     assembly: &StaticAssembly,
-    names: &[&str],
+    bearings: &[(&str, String)],
     solution: &AssemblySolution,
     housings: &str,
     warnings: &[Warning],
@@ -66,7 +73,7 @@ pub fn render_assembly(
     if loaded.len() > 1 {
         text += "stiffness is that of each body with all others fixed; summary.json has the coupling terms\n\n";
     }
-    for (name, bearing) in names.iter().zip(&solution.bearings) {
+    for ((name, life), bearing) in bearings.iter().zip(&solution.bearings) {
         let [force, _] = &bearing.forces;
         let _ = write!(
             text,
@@ -79,7 +86,7 @@ pub fn render_assembly(
         let (loaded, extent) = load_zone_of(&bearing.balls);
         let _ = writeln!(
             text,
-            "{loaded} of {} balls loaded, load zone {} deg\n",
+            "{loaded} of {} balls loaded, load zone {} deg\n{life}",
             bearing.balls.len(),
             fixed(extent.to_degrees(), 3)
         );

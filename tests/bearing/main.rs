@@ -35,6 +35,7 @@ mod geometry_laws;
 mod plan_and_step;
 mod profile_laws;
 mod raceway_profiles;
+mod rating_life;
 mod relaxing;
 mod rolling_starts;
 mod sensors;

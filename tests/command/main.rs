@@ -47,6 +47,7 @@ mod housed_starts;
 mod housing_meshes;
 mod modes_of_housings;
 mod plan_words;
+mod rating_life;
 mod rotors_on_springs;
 mod rubber_command;
 mod rubber_limits;

@@ -66,6 +66,10 @@ pub mod line_contact_plane_strain;
 mod misalignment_moment;
 #[path = "../misalignment_on_bushing_3_4_5/case.rs"]
 mod misalignment_on_bushing_3_4_5;
+#[path = "../outside_bearings/case.rs"]
+pub mod outside_bearings;
+#[path = "../outside_rotors/case.rs"]
+mod outside_rotors;
 #[path = "../raceway_profiles/case.rs"]
 mod raceway_profiles;
 #[path = "../reduced_housing/case.rs"]
@@ -127,6 +131,7 @@ mod varying_compliance_statics;
 
 pub const CASES: &[Case] = &[
     hertz_elliptic::CASE,
+    outside_bearings::CASE,
     rotating_load_orbit::CASE,
     statics_independent::CASE,
     shaft_on_two_bearings::CASE,
@@ -135,6 +140,7 @@ pub const CASES: &[Case] = &[
     rotor_in_elements_4_2::CASE,
     free_spin_4_2_2::CASE,
     ross_comparison::CASE,
+    outside_rotors::CASE,
     flexible_shaft_4_3_3::CASE,
     critical_speed_4_3_4::CASE,
     misalignment_moment::CASE,

@@ -24,7 +24,11 @@ pub enum Reference {
 pub enum ReferenceKind {
     /// Printed in the source.
     Published,
-    /// Printed in the source; a one-sided limit shows why our number differs.
+    /// Printed in another book, a paper or a standard.
+    Book,
+    /// Published output of another program.
+    OtherProgram,
+    /// A published number; a one-sided limit shows why our number differs.
     Evidence,
     /// A formula evaluated separately from the law it judges.
     ClosedForm,

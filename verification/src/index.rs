@@ -8,7 +8,9 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
+use crate::cases;
 use crate::judge::Status;
+use crate::published::Published;
 use crate::report::{CaseReport, CaseStatus};
 
 /// Kind of a line of the source.
@@ -174,6 +176,37 @@ impl Index {
         };
         self.chapters.iter().map(chapter).collect()
     }
+}
+
+/// Numbers of other books and programs, a line for each case and source.
+pub fn outside() -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    for case in cases::CASES {
+        let published = Published::parse(case.published).unwrap_or_default();
+        for value in published.values().iter().filter(|value| value.kind.is_some()) {
+            let claim = format!("{}/{}", case.id, value.id);
+            match lines.iter_mut().find(|line| line.what == value.source) {
+                Some(line) => line.values.push(claim),
+                None => lines.push(Line {
+                    section: String::new(),
+                    at: String::new(),
+                    role: Role::Result,
+                    what: value.source.clone(),
+                    prints: 0,
+                    values: vec![claim],
+                    cases: Vec::new(),
+                }),
+            }
+        }
+    }
+    lines
+}
+
+/// Counts of [`outside`] numbers by status in a run.
+pub fn outside_numbers(cases: &[CaseReport]) -> Numbers {
+    let mut numbers = Numbers::default();
+    outside().iter().for_each(|line| numbers.add(&line.judged(cases).numbers));
+    numbers
 }
 
 impl Line {

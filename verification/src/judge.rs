@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::{Check, Explanation, Reference, ReferenceKind, Tolerance};
 use crate::context::CaseContext;
-use crate::published::Published;
+use crate::published::{Outside, Published};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -165,12 +165,16 @@ fn verdict_of(
             *value
         }
         Reference::Published(id) => {
-            report.reference_kind = Some(ReferenceKind::Published);
             report.published_id = Some(id.clone());
             let entry = published
                 .get(id)
                 .ok_or_else(|| format!("published.toml has no value with id `{id}`"))?;
             report.reference_source = entry.source.clone();
+            report.reference_kind = Some(match entry.kind {
+                None => ReferenceKind::Published,
+                Some(Outside::Book) => ReferenceKind::Book,
+                Some(Outside::OtherProgram) => ReferenceKind::OtherProgram,
+            });
             rounding = entry.rounding;
             states_limit = entry.bound.is_some();
             if entry.unit != check.unit {

@@ -1,4 +1,4 @@
-//! Numbers printed in the source, read from a case's `published.toml`.
+//! Numbers printed in the source, in other books and by other programs, read from a case's `published.toml`.
 
 use std::collections::HashSet;
 
@@ -14,13 +14,23 @@ pub struct PublishedValue {
     pub value: f64,
     /// As printed; `"1"` for a pure number.
     pub unit: String,
-    /// Table, figure or section.
+    /// Table, figure or section; of an outside number also the book or program.
     pub source: String,
+    /// Absent for a number of the dissertation.
+    pub kind: Option<Outside>,
     pub note: Option<String>,
     /// One unit of the last printed place (0.001 for 6.423).
     pub rounding: Option<f64>,
     /// Set where the source states a limit ("less than 4 %") and not a value.
     pub bound: Option<Bound>,
+}
+
+/// What prints a number that is not of the dissertation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outside {
+    Book,
+    OtherProgram,
 }
 
 /// The kind of limit a source states.

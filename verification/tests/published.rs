@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use verification::index::{Index, Line, Role};
+use verification::index::{self, Index, Line, Role};
 use verification::published::{Published, PublishedValue};
 use verification::report::format;
 use verification::{cases, golden, page};
@@ -262,7 +262,8 @@ fn wrong_claims(index: &Index, values: &BTreeMap<String, PublishedValue>) -> Vec
             }
         }
     }
-    let unclaimed = values.keys().filter(|name| !claimed.contains(*name));
+    let own = values.iter().filter(|(_, value)| value.kind.is_none()).map(|(name, _)| name);
+    let unclaimed = own.filter(|name| !claimed.contains(*name));
     problems.extend(unclaimed.map(|name| format!("no line of the index claims `{name}`")));
     problems
 }
@@ -309,6 +310,8 @@ const TYPED: &[(&str, f64, &str)] = &[
         "217 of 255: a colour, not a damping ratio of Table 3.3",
     ),
     ("src/surface_picture.rs", 0.132, "132 of 255: a colour, not a damping ratio of Table 3.3"),
+    ("outside_bearings/case.rs", 1.0, "ones of formulas, not coefficients of a circular contact"),
+    ("outside_bearings/oracle.rs", 1.0, "ones of formulas, not coefficients of a circular contact"),
     (
         "src/bushings.rs",
         2.42e6,
@@ -430,7 +433,8 @@ fn the_page_holds_every_published_number() {
     let index = Index::load().unwrap();
     let values = published_values();
     let mut shown = 0;
-    for line in index.lines() {
+    let outside = index::outside();
+    for line in index.lines().chain(&outside) {
         for id in line.ids() {
             let claims = line.values.iter().filter(|claim| claim.ends_with(&format!("/{id}")));
             let named: Vec<&String> = claims.filter(|claim| rows.contains_key(*claim)).collect();

@@ -10,5 +10,6 @@ pub mod frequencies;
 pub mod geometry;
 pub mod hertz;
 pub mod inertia;
+pub mod rating;
 pub mod slices;
 pub mod traction;

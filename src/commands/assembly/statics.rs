@@ -8,6 +8,7 @@ use super::{Fallible, defaults, echo, name_of, plan};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::echo::{frequencies, frequency_line, hertz, sections};
+use crate::commands::life::Life;
 use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, pictures, print, record, table};
 use bearing_dynamics::assembly::static_lists::StaticAssembly;
@@ -49,6 +50,7 @@ pub struct Found<'s> {
     moment: EquilibriumAt,
     /// The same as the problem and solution of a single bearing; `None` with several.
     of_one: Option<(StaticProblem, StaticSolution)>,
+    lives: Vec<Option<Life>>,
     warnings: Vec<Warning>,
     inertia: Option<FrequencyRatio>,
     settled: Vec<Settled>,
@@ -117,6 +119,11 @@ pub fn find_equilibrium<'s>(
             record.sections.push(("frequencies".into(), by_name(scene, speeds)?));
         }
     }
+    let balls = moment.solution.bearings.iter().map(|bearing| &bearing.balls);
+    let lives = scene.bearings.iter().zip(balls);
+    let lives: Vec<_> = lives.map(|(placed, balls)| Life::of(&placed.scene, balls)).collect();
+    let section = by_name(scene, lives.iter().map(Life::section))?;
+    record.sections.push(("rating_life".into(), section));
     let mut settled = Vec::with_capacity(housings.len());
     for ((housing, bore), state) in housings.into_iter().zip(&bores).zip(&moment.solution.seats) {
         let own = Settled::new(housing, bore, state);
@@ -151,6 +158,7 @@ pub fn find_equilibrium<'s>(
         assembly,
         moment,
         of_one,
+        lives,
         warnings,
         inertia,
         settled,
@@ -185,13 +193,16 @@ impl Found<'_> {
         for note in self.settled.iter().flat_map(|settled| settled.housing.notes()) {
             text += &format!("note: {note}\n");
         }
+        let lives = self.lives.iter().map(|life| life.as_ref().map_or(String::new(), Life::text));
         text += &match &self.of_one {
-            Some((_, solution)) => table::render(solution, &of_housings, &self.warnings),
+            Some((_, solution)) => {
+                table::render(solution, &lives.collect::<String>(), &of_housings, &self.warnings)
+            }
             None => {
-                let names = &self.names;
+                let bearings: Vec<_> = self.names.iter().copied().zip(lives).collect();
                 table::render_assembly(
                     &self.assembly,
-                    names,
+                    &bearings,
                     solution,
                     &of_housings,
                     &self.warnings,

@@ -1,8 +1,9 @@
 //! From the given keys to the resolved scene: defaults, and checks between keys.
 
 use crate::assembly::loads::Drive;
-use crate::ch2_housing::bearing::geometry::{BearingKind, Material};
+use crate::ch2_housing::bearing::geometry::{BearingGeometry, BearingKind, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
+use crate::ch2_housing::bearing::rating::LARGEST_CONTACT_ANGLE;
 use crate::equilibrium::statics::{COORDINATE_NAMES, Condition};
 use crate::numeric::profile::Profile;
 use crate::scene::error::{Problem, SceneError};
@@ -35,6 +36,7 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
     };
     let (geometry, dimensions) = geometry::geometry(&mut reader, kind)?;
     let cage = cage::cage(&reader, &geometry, &dimensions)?;
+    let dynamic_rating = rating(&reader, &geometry)?;
     let hertz = match reader.choice("bearing.hertz") {
         Some("exact") => HertzModel::Exact,
         _ => HertzModel::HamrockBrewe,
@@ -91,6 +93,7 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
         ball_material,
         hertz,
         cage,
+        dynamic_rating,
         ball_phase,
         conditions,
         outer_race,
@@ -104,6 +107,18 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
         sweep: document.sweep().to_vec(),
         defaults_used,
     })
+}
+
+/// The given dynamic load rating, N.
+fn rating(reader: &Reader, geometry: &BearingGeometry) -> Result<Option<f64>, SceneError> {
+    const DYNAMIC: &str = "bearing.rating.dynamic";
+    let given = reader.given_number(DYNAMIC);
+    if given.is_some() && geometry.contact_angle > LARGEST_CONTACT_ANGLE {
+        let reason = "the rating life of a thrust bearing is not modelled";
+        let advice = "leave it out, or use a contact angle of at most 45 deg";
+        return Err(reader.document.error(DYNAMIC, Problem::refused(reason, advice)));
+    }
+    Ok(given)
 }
 
 /// Reads keys and records the defaults used.

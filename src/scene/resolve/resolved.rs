@@ -196,6 +196,8 @@ pub struct Scene {
     pub ball_material: Material,
     pub hertz: HertzModel,
     pub cage: Option<Cage>,
+    /// Basic dynamic load rating as given, N.
+    pub dynamic_rating: Option<f64>,
     /// Azimuth of ball 1 from +Y towards +Z, rad.
     pub ball_phase: f64,
 

@@ -1,7 +1,7 @@
 //! Rows of the key table: geometry and materials, conditions on the races, outputs.
 
 use crate::scene::tables::keys::{
-    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, Table, closed, list_table, open, table,
+    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, Table, above, closed, list_table, open, table,
 };
 use crate::scene::text::units::Dimension::{
     Acceleration, Angle, Density, Force, Length, Mass, Moment, RotationSpeed, Stress,
@@ -163,6 +163,10 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("bearing.cage.outer_radius", RADIUS, Optional, "Outer radius."),
     quantity("bearing.cage.race_clearance", Kind::Quantity(Length, closed(0.0, 1000.0, "mm")), Optional,
         "Radial clearance to the race that guides the cage."),
+    quantity("bearing.rating.dynamic", Kind::Quantity(Force, above(0.0, 1e9, "N")),
+        Depends("ISO 281, from the geometry"),
+        "Basic dynamic load rating C. `statics` computes the rating life of ISO/TS 16281 from it and the ball loads. Contact angles up to 45 deg only.")
+        .hint("catalogues give C in kN; check the unit").example_of("23.4 kN"),
     Key::new("bearing.dent.race", Kind::Choice(DENTED), Required, "Race with the dent."),
     quantity("bearing.dent.angle", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), Required,
         "Azimuth of the dent on the race, from the race's own Y towards its Z; the dent rotates with the race. A `reversed` bearing measures it in its own axes: in the scene it is at 180 deg minus this angle.").example_of("270 deg"),
@@ -266,6 +270,7 @@ pub(crate) const TABLES: &[Table] = &[
     table("bearing.outer_race.material", "Material of the outer race; every key is optional.", MATERIAL_EXAMPLE),
     table("bearing.ball", "Balls.", "ball = { radius = \"5.953 mm\" }"),
     table("bearing.ball.material", "Material of the balls; every key is optional.", MATERIAL_EXAMPLE),
+    table("bearing.rating", "Load rating.", "[bearing.rating]\ndynamic = \"23.4 kN\""),
     list_table("bearing.dent", "A dent in a race (3.20), any number. Runs only; equilibria ignore dents.",
         "[[bearing.dent]]\nrace = \"outer\"\nangle = \"270 deg\"\ndiameter = \"500 um\""),
     list_table("bearing.spall", "A spall in a race or on a ball (5.4.3), any number. Runs only; equilibria ignore spalls.",

@@ -97,6 +97,8 @@ pub fn unit(unit: &str) -> String {
 pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
     match kind {
         Some(ReferenceKind::Published) => "published",
+        Some(ReferenceKind::Book) => "book",
+        Some(ReferenceKind::OtherProgram) => "other program",
         Some(ReferenceKind::Evidence) => "evidence",
         Some(ReferenceKind::ClosedForm) => "closed form",
         Some(ReferenceKind::Converged) => "converged",
@@ -111,6 +113,8 @@ pub fn kind(kind: Option<ReferenceKind>) -> &'static str {
 pub fn meaning(kind: ReferenceKind) -> &'static str {
     match kind {
         ReferenceKind::Published => "a number that the source prints",
+        ReferenceKind::Book => "a number of another book, paper or standard",
+        ReferenceKind::OtherProgram => "published output of another program",
         ReferenceKind::Evidence => "why a printed number differs",
         ReferenceKind::ClosedForm => "a formula evaluated separately",
         ReferenceKind::Converged => "the limit of a refinement",
@@ -180,6 +184,11 @@ pub fn lead(report: &Report, totals: &Totals) -> Vec<String> {
             "Of {} that the source prints as results: {}.",
             counted(totals.published_numbers.printed(), "number"),
             in_words(&totals.published_numbers.parts())
+        ),
+        format!(
+            "Of {} of other books and programs: {}.",
+            counted(totals.outside_numbers.printed(), "number"),
+            in_words(&totals.outside_numbers.parts())
         ),
         format!(
             "{}: {}. One-sided: {}.",

@@ -6,7 +6,7 @@ use crate::case::Case;
 use crate::cases;
 use crate::check::ReferenceKind;
 use crate::context::Assumption;
-use crate::index::{ChapterEntries, Numbers};
+use crate::index::{self, ChapterEntries, Numbers};
 use crate::judge::{CheckReport, Status, ToleranceOn};
 use crate::report::{CaseReport, Report};
 
@@ -34,6 +34,8 @@ pub struct Totals {
     pub by_kind: Vec<OfKind>,
     /// Numbers that the source prints, each once, however many cases hold it.
     pub published_numbers: Numbers,
+    /// Numbers that other books and programs print.
+    pub outside_numbers: Numbers,
     /// Checks of a published number that another case of this run holds as well.
     pub twins: usize,
 }
@@ -47,8 +49,10 @@ pub const STATUSES: [Status; 6] = [
     Status::Pass,
 ];
 
-const KINDS: [ReferenceKind; 7] = [
+const KINDS: [ReferenceKind; 9] = [
     ReferenceKind::Published,
+    ReferenceKind::Book,
+    ReferenceKind::OtherProgram,
     ReferenceKind::Evidence,
     ReferenceKind::ClosedForm,
     ReferenceKind::Converged,
@@ -85,6 +89,7 @@ pub fn totals(report: &Report, chapters: &[ChapterEntries]) -> Totals {
             })
             .into(),
         published_numbers,
+        outside_numbers: index::outside_numbers(&report.cases),
         twins: twins(report),
     }
 }
