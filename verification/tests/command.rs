@@ -47,6 +47,8 @@ fn a_run_writes_its_report_on_one_thread() {
     let named: Vec<&str> = kinds.iter().map(|kind| kind["kind"].as_str().unwrap()).collect();
     let all = [
         "published",
+        "book",
+        "other-program",
         "evidence",
         "closed-form",
         "converged",
