@@ -166,7 +166,7 @@ fn power_goes_into_the_store_or_is_lost() {
             // (time × turning rate)² of a second derivative, and rounding of energies over the time.
             let error = (power + rate - loss).abs();
             assert!(error <= 1e-7 * size, "{power} {rate} {loss}: {error:e} of {size:e}");
-            assert!(loss < 0.0);
+            assert!(loss < 0.0 || connection.cross().is_some());
         }
     }
 }
