@@ -54,6 +54,7 @@ pub enum WarningCode {
     ExcitationFasterThanFit,
     BeyondKeptModes,
     WhirlUnstable,
+    StillSettling,
 }
 
 impl WarningCode {
@@ -81,7 +82,7 @@ pub struct Entry {
     pub action: &'static str,
 }
 
-pub const TABLE: [Entry; 17] = [
+pub const TABLE: [Entry; 18] = [
     Entry {
         name: "W01-indeterminate-position",
         title: "Position not determined",
@@ -187,16 +188,23 @@ pub const TABLE: [Entry; 17] = [
     },
     Entry {
         name: "W16-beyond-kept-modes",
-        title: "Result beyond the kept modes",
-        meaning: "A reduced shaft or housing is used outside its range. Either an excitation has a frequency above \
-         those of the kept modes, or the load on the bore exceeds the load for which the static correction \
-         modes were computed.",
-        action: "Keep more modes (`body.NAME.beam.modes_to`, `housing.modes_to`), or raise `housing.bore_load`.",
+        title: "Load on a bore beyond its static correction modes",
+        meaning: "The load on the bore of a reduced housing exceeds the load for which its static correction modes \
+         were computed.",
+        action: "Raise `housing.bore_load`.",
     },
     Entry {
         name: "W17-whirl-unstable",
         title: "Unstable whirl",
         meaning: "A whirl mode has negative damping at the top speed and grows, usually by internal damping above a critical speed.",
         action: "Reduce the speed or the internal damping, or add damping that does not rotate.",
+    },
+    Entry {
+        name: "W18-still-settling",
+        title: "Motion still settling",
+        meaning: "Loads and speeds are constant over the window, which has ten turns of the inner race or more. The mean position \
+         of the inner race nevertheless changes from its first half to its second by more than it oscillates. Means and spectra of \
+         the window are not those of the settled motion.",
+        action: "Lengthen the run (`numerics.end`) and start the window later (`output.window_start`).",
     },
 ];
