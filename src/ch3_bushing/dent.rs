@@ -75,11 +75,20 @@ pub struct Lost {
     pub across: f64,
 }
 
-/// Table of Δ over q = √(δ + shoulder) and a normalised distance σ in [0, 1], for contacts along the rolling direction
-/// and across the groove: cubic splines on a uniform grid.
+/// Number of directions of a table, from the rolling direction to that across the groove.
+pub const DIRECTIONS: usize = 7;
+
+/// Squared sine of a direction's angle in the ellipse of [`DentTable`]: equal angles.
+pub fn squared_sine(direction: usize) -> f64 {
+    0.5 - 0.5 * libm::cos(PI * direction as f64 / (DIRECTIONS - 1) as f64)
+}
+
+/// Table of Δ over q = √(δ + shoulder) and a normalised distance σ in [0, 1] in some directions: cubic splines on a
+/// uniform grid.
 ///
 /// σ² = (s/l_s)² + (y/l_y)² with l = reach + √(2R) q; at σ = 1 the dent leaves the overlap of the ball at that
-/// approach. Between the two directions Δ is interpolated with the squared cosine of the angle in that ellipse.
+/// approach. Δ is even in s and y: between the directions it is the polynomial of the squared sine of the angle in that
+/// ellipse which has their values, that is, a sum of cosines of multiples of twice the angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DentTable {
     /// m.
@@ -92,7 +101,18 @@ pub struct DentTable {
     /// Intervals in q and σ.
     pub intervals: [usize; 2],
     /// Coefficients of the splines, rows of equal q.
-    pub coefficients: [Vec<f64>; 2],
+    pub coefficients: [Vec<f64>; DIRECTIONS],
+    /// Squared sine of each direction, and the factor of its polynomial.
+    pub directions: [[f64; 2]; DIRECTIONS],
+}
+
+/// Squared sines, and the factors by which each direction's polynomial is one there.
+pub fn directions() -> [[f64; 2]; DIRECTIONS] {
+    let sines: [f64; DIRECTIONS] = std::array::from_fn(squared_sine);
+    std::array::from_fn(|k| {
+        let others = (0..DIRECTIONS).filter(|j| *j != k);
+        [sines[k], 1.0 / others.map(|j| sines[k] - sines[j]).product::<f64>()]
+    })
 }
 
 /// Values and slopes of the four nonzero cubic B-splines at the fraction `u` of an interval.
@@ -157,22 +177,32 @@ impl DentTable {
             }
             [sum[0], sum[1] * row_scale, sum[2] * columns as f64]
         };
-        let [along, across] = [of(&self.coefficients[0]), of(&self.coefficients[1])];
-        // Weights of the two directions; at the centre both have the same Δ.
+        // At the centre all directions have the same Δ.
         let (part, per_square) =
             if distance > 0.0 { (z * z / distance, 1.0 / distance) } else { (0.0, 0.0) };
-        let differ = across[0] - along[0];
-        let mixed = |i: usize| along[i] + part * (across[i] - along[i]);
-        // Derivatives by x and z, through σ and through the weight.
-        let per_sigma = if sigma > 0.0 { mixed(2) / sigma } else { 0.0 };
+        let (mut mixed, mut differ) = ([0.0; 3], 0.0);
+        for (k, coefficients) in self.coefficients.iter().enumerate() {
+            // Weight of the direction, and its slope by the squared sine.
+            let (mut weight, mut slope) = (self.directions[k][1], 0.0);
+            for (_, [sine, _]) in self.directions.iter().enumerate().filter(|(j, _)| *j != k) {
+                slope = slope * (part - sine) + weight;
+                weight *= part - sine;
+            }
+            let own = of(coefficients);
+            mixed.iter_mut().zip(own).for_each(|(mixed, own)| *mixed += weight * own);
+            differ += slope * own[0];
+        }
+        let [value, slope_by_q, slope_by_sigma] = mixed;
+        // Derivatives by x and z, through σ and through the weights.
+        let per_sigma = if sigma > 0.0 { slope_by_sigma / sigma } else { 0.0 };
         let turn = 2.0 * differ * part * per_square;
         let by_x = x * (per_sigma - turn);
         let by_z = z * (per_sigma - turn) + 2.0 * differ * z * per_square;
-        let by_q = mixed(1)
+        let by_q = slope_by_q
             - by_x * x * self.spread[0] / lengths[0]
             - by_z * z * self.spread[1] / lengths[1];
         Some(Lost {
-            value: mixed(0),
+            value,
             by_approach: 0.5 * by_q / q,
             along: by_x / lengths[0],
             across: by_z / lengths[1],

@@ -6,6 +6,7 @@ mod bushing_warnings;
 pub mod check;
 pub mod check_mesh;
 pub mod compare;
+mod drift;
 pub mod earlier;
 pub mod echo;
 pub mod echo_run;

@@ -1,7 +1,7 @@
 //! Table of a dent's contact law, from a half-space loaded by the ball at many approaches and positions.
 
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
-use crate::ch3_bushing::dent::{DentShape, DentTable, spline};
+use crate::ch3_bushing::dent::{DIRECTIONS, DentShape, DentTable, directions, spline};
 use crate::members::half_space::{Grid, Influence, Pressed, press};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
@@ -29,14 +29,17 @@ impl Fineness {
 
     /// Largest number of half-space solutions.
     pub fn solves(&self) -> usize {
-        2 * self.intervals[0] * (self.intervals[1] + 1) + 2
+        DIRECTIONS * self.intervals[0] * (self.intervals[1] + 1) + 3
     }
 }
 
 /// Largest pressure of the undented contact in a table, Pa: the static capacity of ball bearings (ISO 76).
 pub const LARGEST_PRESSURE: f64 = 4.2e9;
-/// Tolerance of the gap in contact, in parts of the largest overclosure.
-const CLOSED: f64 = 1e-5;
+/// Most cells in each direction where the dent is on neither axis of the contact: there a solution takes four times as
+/// long.
+const OFF_AXES: usize = 40;
+/// Tolerance of the gap in contact, in parts of the largest overclosure: energies err by its square.
+const CLOSED: f64 = 1e-4;
 /// Points across a dent in the search for the first contact.
 const SEARCHED: usize = 80;
 
@@ -95,15 +98,23 @@ impl DentedContact {
     }
 }
 
-/// A half-space for all approaches of a contact with a dent on one of its two axes: its grid grows with the overlap,
-/// and is mirrored at that axis.
+/// Positions of dents for which a half-space is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DentOn {
+    /// The axis of the contact in the rolling direction, at which its cells are mirrored.
+    Rolling,
+    /// The axis across the groove, likewise.
+    Across,
+    Anywhere,
+}
+
+/// A half-space for all approaches of a contact with a dent: its grid grows with the overlap.
 pub struct Bed {
     contact: DentedContact,
     influence: Influence,
     /// Its x is along the axis with the dent.
     unit: Grid,
-    /// 0 for the rolling direction, 1 for the one across the groove.
-    direction: usize,
+    on: DentOn,
     /// Energy of the undented contact over δ^{5/2}.
     undented: f64,
 }
@@ -112,21 +123,23 @@ impl Bed {
     /// # Errors
     ///
     /// An undented contact that does not converge.
-    pub fn new(contact: DentedContact, cells: usize, direction: usize) -> Result<Bed, DentError> {
-        let spread = contact.spread();
-        let [x, y] = [spread[direction], spread[1 - direction]];
+    pub fn new(contact: DentedContact, cells: usize, on: DentOn) -> Result<Bed, DentError> {
+        let [rolling, across] = contact.spread();
+        let [x, y] = if on == DentOn::Across { [across, rolling] } else { [rolling, across] };
         let size = |half: f64| 2.0 * half / cells as f64;
-        let unit = Grid { nx: cells, ny: cells / 2, hx: size(x), hy: size(y), mirrored: true };
+        let mirrored = on != DentOn::Anywhere;
+        let ny = if mirrored { cells / 2 } else { cells };
+        let unit = Grid { nx: cells, ny, hx: size(x), hy: size(y), mirrored };
         let influence = Influence::new(unit);
-        let mut bed = Bed { contact, influence, unit, direction, undented: 0.0 };
+        let mut bed = Bed { contact, influence, unit, on, undented: 0.0 };
         // All approaches are similar.
         let approach = contact.deepest;
         bed.undented = bed.solve(0.0, approach, None, None)?.energy / five_halves(approach);
         Ok(bed)
     }
 
-    /// Contact at an approach (m) with a dent at this position along the axis (m), or without one. Cells cover all
-    /// possible contact of a highest point `shoulder` (m) above the surface.
+    /// Contact at an approach (m) with a dent at this position along the rolling direction and across the groove (m), or
+    /// without one. Cells cover all possible contact of a highest point `shoulder` (m) above the surface.
     ///
     /// # Errors
     ///
@@ -135,16 +148,14 @@ impl Bed {
         &self,
         shoulder: f64,
         approach: f64,
-        dent: Option<f64>,
+        dent: Option<[f64; 2]>,
         guess: Option<&[f64]>,
     ) -> Result<Pressed, DentError> {
         let scale = (approach + shoulder).sqrt();
         let gap = (0..self.unit.cells()).map(|cell| {
-            let [along, aside] = self.unit.middle(cell).map(|at| at * scale);
-            let point = if self.direction == 0 { [along, aside] } else { [aside, along] };
-            let below = dent
-                .map_or(0.0, |dent| self.contact.shape.depth_at(libm::hypot(along - dent, aside)));
-            self.contact.undented(point) + below
+            let [x, y] = self.unit.middle(cell).map(|at| at * scale);
+            let point = if self.on == DentOn::Across { [y, x] } else { [x, y] };
+            dent.map_or_else(|| self.contact.undented(point), |dent| self.contact.gap(point, dent))
         });
         let gap: Vec<f64> = gap.collect();
         press(&self.influence, scale, &gap, approach, guess, CLOSED)
@@ -190,44 +201,57 @@ pub fn usual_table(contact: &DentedContact) -> Result<Arc<DentTable>, DentError>
 ///
 /// A contact that does not converge.
 pub fn dent_table(contact: &DentedContact, fineness: Fineness) -> Result<DentTable, DentError> {
-    let bed = |direction| Bed::new(*contact, fineness.cells, direction);
-    let beds = [bed(0)?, bed(1)?];
+    let beds = [
+        Bed::new(*contact, fineness.cells, DentOn::Rolling)?,
+        Bed::new(*contact, fineness.cells.min(OFF_AXES), DentOn::Anywhere)?,
+        Bed::new(*contact, fineness.cells, DentOn::Across)?,
+    ];
     let [rows, columns] = fineness.intervals;
     let shoulder = contact.shape.shoulder_height;
     let (reach, spread) = (contact.shape.reach(), contact.spread());
     let deepest = (contact.deepest + shoulder).sqrt();
-    let mut values = [vec![0.0; (rows + 1) * (columns + 1)], vec![0.0; (rows + 1) * (columns + 1)]];
+    let directions = directions();
+    let mut values = [(); DIRECTIONS].map(|()| vec![0.0; (rows + 1) * (columns + 1)]);
     for row in 0..=rows {
         let q = deepest * row as f64 / rows as f64;
         let approach = q * q - shoulder;
-        for (direction, (bed, values)) in beds.iter().zip(&mut values).enumerate() {
-            // The undented contact on the same cells is the reference, so that errors of the grid cancel.
-            let flat = if approach > 0.0 {
-                let found = bed.solve(shoulder, approach, None, None)?;
-                bed.equivalent(found.energy) / approach
-            } else {
-                1.0
-            };
+        // The undented contact on the same cells is the reference, so that errors of the grid cancel.
+        let flat = |bed: &Bed| -> Result<f64, DentError> {
+            if approach <= 0.0 {
+                return Ok(1.0);
+            }
+            Ok(bed.equivalent(bed.solve(shoulder, approach, None, None)?.energy) / approach)
+        };
+        let flats = [flat(&beds[0])?, flat(&beds[1])?, flat(&beds[2])?];
+        for (direction, values) in values.iter_mut().enumerate() {
+            let sine = directions[direction][0];
+            let ellipse = [(1.0 - sine).sqrt(), sine.sqrt()];
+            let on =
+                [0, 1, 2][usize::from(direction > 0) + usize::from(direction == DIRECTIONS - 1)];
             let mut last: Option<Vec<f64>> = None;
-            for column in 0..columns {
+            // At the centre, the first column, all directions have the same value.
+            for column in usize::from(on > 0)..columns {
                 let sigma = column as f64 / columns as f64;
-                let along = sigma * (reach + spread[direction] * q);
-                let free =
-                    contact.free_drop(if direction == 0 { [along, 0.0] } else { [0.0, along] });
+                let dent = [0, 1].map(|i| sigma * ellipse[i] * (reach + spread[i] * q));
+                let free = contact.free_drop(dent);
                 let drop = if approach <= free {
                     free
                 } else {
-                    let found = bed.solve(shoulder, approach, Some(along), last.as_deref())?;
-                    let drop = approach - bed.equivalent(found.energy) / flat;
+                    let bed = &beds[on];
+                    let found = bed.solve(shoulder, approach, Some(dent), last.as_deref())?;
+                    let drop = approach - bed.equivalent(found.energy) / flats[on];
                     last = Some(found.pressure);
                     drop
                 };
                 values[row * (columns + 1) + column] = drop;
             }
         }
+        let centre = values[0][row * (columns + 1)];
+        values.iter_mut().for_each(|values| values[row * (columns + 1)] = centre);
     }
     let coefficients = values.map(|values| splined(&values, rows, columns));
-    Ok(DentTable { shoulder, reach, spread, deepest, intervals: fineness.intervals, coefficients })
+    let intervals = fineness.intervals;
+    Ok(DentTable { shoulder, reach, spread, deepest, intervals, coefficients, directions })
 }
 
 /// Splines through values in rows of equal q: along σ, then along q.

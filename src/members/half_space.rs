@@ -67,7 +67,7 @@ fn pressed_spans(pressure: &[f64], ny: usize) -> Vec<Span> {
 #[derive(Clone, Debug)]
 pub struct Influence {
     grid: Grid,
-    /// For each distance of rows and each loaded column, every column.
+    /// For each distance of rows: if mirrored, every column for each loaded column; otherwise every distance of columns.
     kernel: Vec<f64>,
 }
 
@@ -75,12 +75,17 @@ impl Influence {
     pub fn new(grid: Grid) -> Influence {
         let Grid { nx, ny, hx, hy, mirrored } = grid;
         let at = |apart: f64, across: f64| love(apart * hx, across * hy, 0.5 * hx, 0.5 * hy);
-        let mut kernel = Vec::with_capacity(nx * ny * ny);
+        let mut kernel = Vec::new();
+        if !mirrored {
+            let across = |column: usize| column as f64 - (ny as f64 - 1.0);
+            let row = |apart: usize| (0..2 * ny - 1).map(move |j| at(apart as f64, across(j)));
+            kernel.extend((0..nx).flat_map(row));
+            return Influence { grid, kernel };
+        }
         for apart in 0..nx {
             for (pressed, sinks) in (0..ny).flat_map(|l| (0..ny).map(move |j| (l, j))) {
                 let (apart, l, j) = (apart as f64, pressed as f64, sinks as f64);
-                let image = if mirrored { at(apart, l + j + 1.0) } else { 0.0 };
-                kernel.push(at(apart, j - l) + image);
+                kernel.push(at(apart, j - l) + at(apart, l + j + 1.0));
             }
         }
         Influence { grid, kernel }
@@ -146,10 +151,13 @@ impl Influence {
         i: usize,
         j: usize,
     ) -> [f64; N] {
-        let ny = self.grid.ny;
+        let Grid { ny, mirrored, .. } = self.grid;
         let mut sums = [0.0; N];
         for &(k, l, p) in pressed {
-            let from = (i.abs_diff(k) * ny + l) * ny + j;
+            let from = match mirrored {
+                true => (i.abs_diff(k) * ny + l) * ny + j,
+                false => i.abs_diff(k) * (2 * ny - 1) + ny - 1 - l + j,
+            };
             for (sum, by) in sums.iter_mut().zip(&self.kernel[from..from + N]) {
                 *sum += p * by;
             }

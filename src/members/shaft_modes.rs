@@ -59,6 +59,8 @@ pub struct ShaftShapes {
     /// Number of natural modes; the others are static correction modes.
     pub natural: usize,
     pub cut: Cut,
+    /// Lowest omitted natural frequency of bending and stretching, rad/s; infinite if none.
+    pub first_omitted: f64,
     /// Frequencies of stretching, rad/s, and axial displacements in the order of those of bending.
     pub stretch_frequencies: Vec<f64>,
     pub stretch: Vec<f64>,
@@ -296,6 +298,7 @@ pub fn free_shaft(
     let rows: Vec<usize> = held.iter().map(|hold| hold.station).collect();
     let free = FreeBody { mass, stiffness, rigid: &even };
     let stretch = free.shapes(kept.below, kept.most, &rows)?;
+    shapes.first_omitted = shapes.cut.above.min(stretch.cut.above);
     shapes.stretch = stretch.shapes.transpose().iter().copied().collect();
     shapes.stretch_frequencies = stretch.frequencies;
     Ok((plane.rigid_part(), shapes))

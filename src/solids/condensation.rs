@@ -116,8 +116,6 @@ pub struct CondensedBore {
     /// Energy of these loads in the solid without contact, J.
     pub own_energy: f64,
     pub sizes: Sizes,
-    /// Lumped masses of the solid's nodes, kg.
-    pub mass: Vec<f64>,
     /// Young's modulus of the solid, Pa.
     pub youngs_modulus: f64,
     frame: Frame,
@@ -283,7 +281,6 @@ pub fn condense_over(
         compliance,
         asymmetry,
         sizes,
-        mass: model.mass.clone(),
         youngs_modulus: model.problem.material.youngs_modulus(),
         frame,
         factor,
@@ -335,7 +332,7 @@ impl CondensedBore {
 
     /// Displacements of all nodes.
     fn field(&self, solution: &[f64]) -> Vec<Vec3> {
-        let nodes = 0..self.mass.len() as u32;
+        let nodes = 0..self.unknowns.of.len() as u32;
         nodes.map(|node| gather(&self.unknowns, node, solution)).collect()
     }
 

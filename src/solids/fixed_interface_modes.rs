@@ -13,6 +13,7 @@ use crate::solids::condensation::CondensedBore;
 use crate::solids::model::SolidModel;
 use crate::solids::modes::Mode;
 use crate::solids::reduction::{ReduceError, lowest_modes, natural_modes};
+use crate::solids::tangent::{MassMatrix, consistent_momentum};
 use crate::vibrations::quasi_static_limit::{FixedInterfaceMode, HousingMass, housing_mass};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
@@ -31,7 +32,6 @@ pub enum Natural {
 ///
 /// # Errors
 ///
-/// Modes that are not found.
 /// Natural modes that are not found.
 pub fn natural_modes_of(
     model: &SolidModel,
@@ -39,29 +39,34 @@ pub fn natural_modes_of(
     natural: Natural,
 ) -> Result<(Vec<Mode>, f64), ReduceError> {
     match natural {
-        Natural::UpTo(frequency) => natural_modes(model, bore, frequency),
+        Natural::UpTo(frequency) => natural_modes(model, bore, frequency, MassMatrix::Consistent),
         Natural::Lowest(count) => lowest_modes(model, bore, count),
     }
 }
 
-/// The housing of a search about the last equilibrium of its bore: displacements that follow the race, the body of
+/// The housing `model` of a search about the last equilibrium of its bore: displacements that follow the race, the body of
 /// index `race` among the moving ones, and modes with the race fixed from the `natural` modes; `damping` of its
 /// elements in 1/s.
 pub fn vibrating_housing(
     search: &BoreSearch,
+    model: &SolidModel,
     race: usize,
     natural: &[Mode],
     damping: f64,
 ) -> HousingMass {
     HousingMass {
-        held: fixed_interface_modes(search, natural),
+        held: fixed_interface_modes(search, model, natural),
         damping,
-        ..housing_mass(search, race)
+        ..housing_mass(search, model, race)
     }
 }
 
-/// Modes with the race fixed, from the responses of natural modes (lumped masses) to their own inertia.
-fn fixed_interface_modes(search: &BoreSearch, natural: &[Mode]) -> Vec<FixedInterfaceMode> {
+/// Modes with the race fixed, from the responses of natural modes to their own inertia.
+fn fixed_interface_modes(
+    search: &BoreSearch,
+    model: &SolidModel,
+    natural: &[Mode],
+) -> Vec<FixedInterfaceMode> {
     if natural.is_empty() {
         return Vec::new();
     }
@@ -69,16 +74,17 @@ fn fixed_interface_modes(search: &BoreSearch, natural: &[Mode]) -> Vec<FixedInte
     let held: Vec<Vec<Vec3>> =
         natural.iter().map(|mode| with_race_fixed(search, &mode.shape)).collect();
     let followers = search.loads_by_pose().map(|loads| bore.response(&loads));
-    let inner = |a: &[Vec3], b: &[Vec3]| -> f64 {
-        a.iter().zip(b).zip(&bore.mass).map(|((u, v), mass)| mass * dot(*u, *v)).sum()
-    };
+    let inner = |a: &[Vec3], b: &[Vec3]| -> f64 { a.iter().zip(b).map(|(u, v)| dot(*u, *v)).sum() };
+    let momentum = |shape: &[Vec3]| consistent_momentum(model, shape);
+    let own: Vec<Vec<Vec3>> = natural.iter().map(|mode| momentum(&mode.shape)).collect();
+    let of_held: Vec<Vec<Vec3>> = held.iter().map(|shape| momentum(shape)).collect();
     let count = held.len();
     // (K + P) χ_l = ω_l² M φ_l.
     let stiffness = DMatrix::from_fn(count, count, |k, l| {
-        (TAU * natural[l].frequency).powi(2) * inner(&held[k], &natural[l].shape)
+        (TAU * natural[l].frequency).powi(2) * inner(&held[k], &own[l])
     });
-    let mass = DMatrix::from_fn(count, count, |k, l| inner(&held[k], &held[l]));
-    let shared = DMatrix::from_fn(4, count, |i, l| inner(&followers[i], &held[l]));
+    let mass = DMatrix::from_fn(count, count, |k, l| inner(&held[k], &of_held[l]));
+    let shared = DMatrix::from_fn(4, count, |i, l| inner(&followers[i], &of_held[l]));
     let Some(factor) = mass.cholesky() else { return Vec::new() };
     let lower = factor.l();
     let over = |of: DMatrix<f64>| lower.solve_lower_triangular(&of).unwrap_or(of);

@@ -204,7 +204,7 @@ const RESIDUAL: f64 = 1e-7;
 /// Residual of modes that are combined again.
 const ROUGH_RESIDUAL: f64 = 1e-4;
 
-/// Natural modes (lumped masses) up to a frequency, and the frequency of the first one beyond, Hz.
+/// Natural modes up to a frequency, and the frequency of the first one beyond, Hz.
 ///
 /// # Errors
 ///
@@ -213,18 +213,19 @@ pub fn natural_modes(
     model: &SolidModel,
     bore: &CondensedBore,
     frequency: f64,
+    mass: MassMatrix,
 ) -> Result<(Vec<Mode>, f64), ReduceError> {
     if !(frequency > 0.0 && frequency.is_finite()) {
         return Err(ReduceError::Frequency { frequency });
     }
     let wanted = Wanted::UpTo { frequency, most: MOST };
-    natural(model, bore, wanted, RESIDUAL).map_err(|error| match error {
+    natural(model, bore, wanted, (mass, RESIDUAL)).map_err(|error| match error {
         ModeError::MoreThan { most, frequency } => ReduceError::TooMany { most, frequency },
         other => other.into(),
     })
 }
 
-/// The lowest natural modes (lumped masses), with frequencies accurate to 1e-8, and the frequency of the first one
+/// The lowest natural modes (consistent masses), with frequencies accurate to 1e-8, and the frequency of the first one
 /// beyond, Hz.
 ///
 /// # Errors
@@ -236,7 +237,7 @@ pub fn lowest_modes(
     count: usize,
 ) -> Result<(Vec<Mode>, f64), ReduceError> {
     let wanted = Wanted::Lowest((count + 1).min(bore.unknowns().count));
-    Ok(natural(model, bore, wanted, ROUGH_RESIDUAL)?)
+    Ok(natural(model, bore, wanted, (MassMatrix::Consistent, ROUGH_RESIDUAL))?)
 }
 
 /// All but the last of the requested modes, and the frequency of that, Hz; infinite if there is none.
@@ -244,9 +245,9 @@ fn natural(
     model: &SolidModel,
     bore: &CondensedBore,
     wanted: Wanted,
-    tolerance: f64,
+    (mass, tolerance): (MassMatrix, f64),
 ) -> Result<(Vec<Mode>, f64), ModeError> {
-    let options = ModeOptions { wanted, mass: MassMatrix::Lumped, tolerance };
+    let options = ModeOptions { wanted, mass, tolerance };
     let mut modes = bore.modes(model, &options)?.modes;
     let is_last = match wanted {
         Wanted::Lowest(count) => count == modes.len() && count < bore.unknowns().count,
@@ -277,7 +278,7 @@ pub fn reduce(
     loads: &LoadPatterns,
     options: &ReduceOptions,
 ) -> Result<Reduction, ReduceError> {
-    let (modes, first_left_out) = natural_modes(model, bore, options.modes_to)?;
+    let (modes, first_left_out) = natural_modes(model, bore, options.modes_to, MassMatrix::Lumped)?;
     let lowest = modes.first().map_or(first_left_out, |mode| mode.frequency);
     let natural: Vec<(f64, Vec<Vec3>)> =
         modes.into_iter().map(|mode| (TAU * mode.frequency, mode.shape)).collect();

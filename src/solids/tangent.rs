@@ -3,7 +3,7 @@
 use crate::elements::tet4::{Tet4, relative};
 use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::strain::Mat3;
-use crate::kinematics::vec3::Vec3;
+use crate::kinematics::vec3::{Vec3, add_scaled};
 use crate::mesh::tet_mesh::Elements;
 use crate::numeric::sparse;
 use crate::numeric::sparse::elimination::Elimination;
@@ -250,23 +250,36 @@ pub fn mass(
         }
         return;
     }
-    let problem = &model.problem;
-    let sound = "elements were checked when the model was made";
-    let mut add = |a: u32, b: u32, share: f64| {
+    consistent_shares(&model.problem, |a, b, share| {
         for i in 0..3 {
-            let (row, column) = (unknowns.of[a as usize][i], unknowns.of[b as usize][i]);
+            let (row, column) = (unknowns.of[a][i], unknowns.of[b][i]);
             if row != PRESCRIBED && column != PRESCRIBED && row >= column {
                 matrix.add(Entry { row, column }, share);
             }
         }
-    };
+    });
+}
+
+/// Consistent mass times a displacement of all nodes (m), kg·m.
+pub fn consistent_momentum(model: &SolidModel, shape: &[Vec3]) -> Vec<Vec3> {
+    let mut momentum = vec![[0.0; 3]; shape.len()];
+    consistent_shares(&model.problem, |a, b, share| {
+        momentum[a] = add_scaled(momentum[a], share, shape[b]);
+    });
+    momentum
+}
+
+/// Calls `add` with two nodes of each element and the consistent mass between them, kg.
+fn consistent_shares(problem: &SolidProblem, mut add: impl FnMut(usize, usize, f64)) {
+    let sound = "elements were checked when the model was made";
     match &problem.elements {
         Elements::Linear(list) => {
             for nodes in list {
                 let tet = Tet4::new(&corners(&problem.nodes, nodes)).expect(sound);
                 for a in 0..4 {
                     for b in 0..4 {
-                        add(nodes[a], nodes[b], tet.consistent_mass(problem.density, a, b));
+                        let share = tet.consistent_mass(problem.density, a, b);
+                        add(nodes[a] as usize, nodes[b] as usize, share);
                     }
                 }
             }
@@ -277,7 +290,7 @@ pub fn mass(
                     tet10::consistent_mass(&corners(&problem.nodes, nodes), problem.density);
                 for a in 0..10 {
                     for b in 0..10 {
-                        add(nodes[a], nodes[b], shares[a][b]);
+                        add(nodes[a] as usize, nodes[b] as usize, shares[a][b]);
                     }
                 }
             }

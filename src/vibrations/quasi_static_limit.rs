@@ -6,6 +6,8 @@
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::dot;
 use crate::solids::bore_equilibrium::BoreSearch;
+use crate::solids::model::SolidModel;
+use crate::solids::tangent::consistent_momentum;
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen};
 use std::f64::consts::TAU;
 
@@ -168,14 +170,13 @@ fn diagonal(inertia: &Inertia) -> [f64; 5] {
     [mass, mass, mass, transverse, transverse]
 }
 
-/// Mass of a housing along the outer race's coordinates about the last equilibrium of its bore: of the displacement
+/// Consistent mass of a housing `model` along the outer race's coordinates about the last equilibrium of its bore: of the displacement
 /// under the loads of a unit of each coordinate, with the same contact nodes.
-pub fn housing_mass(search: &BoreSearch, race: usize) -> HousingMass {
+pub fn housing_mass(search: &BoreSearch, model: &SolidModel, race: usize) -> HousingMass {
     let (bore, loads) = (search.bore(), search.loads_by_pose());
     let shapes = loads.each_ref().map(|loads| bore.response(loads));
-    let mass = Matrix4::from_fn(|i, j| {
-        let pairs = shapes[i].iter().zip(&shapes[j]).zip(&bore.mass);
-        pairs.map(|((u, v), mass)| mass * dot(*u, *v)).sum()
-    });
+    let momenta = shapes.each_ref().map(|shape| consistent_momentum(model, shape));
+    let mass =
+        Matrix4::from_fn(|i, j| shapes[i].iter().zip(&momenta[j]).map(|(u, v)| dot(*u, *v)).sum());
     HousingMass { race, mass, held: Vec::new(), damping: 0.0 }
 }

@@ -14,7 +14,7 @@ use bearing_dynamics::ch5_cage::raceway_profile::RacewayProfile;
 use bearing_dynamics::kinematics::vec3::{add, cross, norm, scale};
 use bearing_dynamics::members::contacts::{ContactTable, Kernel, Want};
 use bearing_dynamics::members::dent_table::{
-    Bed, DentedContact, Fineness, dent_table, usual_table,
+    Bed, DentOn, DentedContact, Fineness, dent_table, usual_table,
 };
 use bearing_dynamics::members::half_space::{Grid, Influence, love, press};
 use bearing_dynamics::motion::simulation::{Integrator, Stepping};
@@ -70,7 +70,8 @@ fn the_half_space_comes_to_hertz() {
     let (hertz, delta) = (outer(), 3e-6);
     let modulus = 0.5 * hertz.effective_modulus;
     let misses = [16, 32, 64].map(|cells| {
-        let bed = Bed::new(DentedContact::new(pit(WIDE, 0.0), &hertz), cells, 1).unwrap();
+        let bed =
+            Bed::new(DentedContact::new(pit(WIDE, 0.0), &hertz), cells, DentOn::Across).unwrap();
         let found = bed.solve(0.0, delta, None, None).unwrap();
         let load = hertz.stiffness * delta * delta.sqrt();
         [found.load * modulus / load - 1.0, found.energy * modulus / (0.4 * load * delta) - 1.0]
@@ -88,11 +89,16 @@ fn a_shallow_pit_costs_what_the_pressure_finds_in_it() {
     let (hertz, delta) = (outer(), 3e-6);
     let load = hertz.stiffness * delta * delta.sqrt();
     let ellipse = contact_ellipse(&hertz, load);
-    for (direction, along) in [(0, 0.0), (0, 80e-6), (1, 300e-6)] {
+    for (on, dent) in [
+        (DentOn::Rolling, [0.0, 0.0]),
+        (DentOn::Rolling, [80e-6, 0.0]),
+        (DentOn::Across, [0.0, 300e-6]),
+        (DentOn::Anywhere, [60e-6, -200e-6]),
+    ] {
         let shape = pit(WIDE, 3e-9);
-        let bed = Bed::new(DentedContact::new(shape, &hertz), 48, direction).unwrap();
+        let bed = Bed::new(DentedContact::new(shape, &hertz), 48, on).unwrap();
         let energy = |dent| bed.solve(0.0, delta, dent, None).unwrap().energy;
-        let lost = (energy(None) - energy(Some(along))) * 0.5 * hertz.effective_modulus;
+        let lost = (energy(None) - energy(Some(dent))) * 0.5 * hertz.effective_modulus;
         // ∫ p d dA over the ellipse, in rings.
         let (rings, spokes) = (200, 400);
         let mut expected = 0.0;
@@ -102,16 +108,15 @@ fn a_shallow_pit_costs_what_the_pressure_finds_in_it() {
                 let (sin, cos) =
                     libm::sincos(std::f64::consts::TAU * (j as f64 + 0.5) / spokes as f64);
                 let (x, y) = (ellipse.semi_minor * r * cos, ellipse.semi_major * r * sin);
-                let from = if direction == 0 { [x - along, y] } else { [x, y - along] };
-                let depth = shape.depth_at(libm::hypot(from[0], from[1]));
+                let depth = shape.depth_at(libm::hypot(x - dent[0], y - dent[1]));
                 expected += ellipse.peak_pressure * (1.0 - r * r).sqrt() * depth * r;
             }
         }
         expected *= ellipse.semi_minor * ellipse.semi_major / rings as f64 * std::f64::consts::TAU
             / spokes as f64;
-        println!("{direction} {along}: {lost:e} J, closed form {expected:e} J");
+        println!("{dent:?}: {lost:e} J, closed form {expected:e} J");
         // A thousandth of the approach, and cells of a 24th of the contact.
-        assert!((lost / expected - 1.0).abs() <= 2e-3, "{direction} {along}");
+        assert!((lost / expected - 1.0).abs() <= 2e-3, "{dent:?}");
     }
 }
 
@@ -144,13 +149,18 @@ fn slopes_of_the_table_are_its_differences() {
 fn the_table_says_what_the_half_space_does() {
     let (hertz, shape) = (outer(), pit(WIDE, 25e-6));
     let table = dent_table(&DentedContact::new(shape, &hertz), Fineness::USUAL).unwrap();
-    for direction in 0..2 {
-        let bed = Bed::new(DentedContact::new(shape, &hertz), 64, direction).unwrap();
+    for (on, towards) in [
+        (DentOn::Rolling, [1.0, 0.0]),
+        (DentOn::Across, [0.0, 1.0]),
+        (DentOn::Anywhere, [0.6, -0.8]),
+        (DentOn::Anywhere, [-0.9, 1.4]),
+    ] {
+        let bed = Bed::new(DentedContact::new(shape, &hertz), 64, on).unwrap();
         for delta in [1.5e-6, 4e-6, 11e-6] {
             for along in [0.0, 90e-6, 170e-6, 280e-6] {
                 let flat = bed.solve(0.0, delta, None, None).unwrap().load;
-                let found = bed.solve(0.0, delta, Some(along), None).unwrap().load / flat;
-                let place = if direction == 0 { [along, 0.0] } else { [0.0, along] };
+                let place = towards.map(|part| part * along);
+                let found = bed.solve(0.0, delta, Some(place), None).unwrap().load / flat;
                 let n = table.exponent(delta, place);
                 let share = dented_load(1.0, delta, n) / (delta * delta.sqrt());
                 println!("{delta} {place:?}: {share:.4} of {found:.4}, n {n:.4}");
@@ -220,10 +230,10 @@ fn a_shoulder_is_solved_finely_enough() {
     let shape = DentShape { shoulder_height: 1e-6, shoulder_width: 125e-6, ..pit(WIDE, 25e-6) };
     let contact = DentedContact::new(shape, &hertz);
     let table = usual_table(&contact).unwrap();
-    let bed = Bed::new(contact, 120, 0).unwrap();
+    let bed = Bed::new(contact, 120, DentOn::Rolling).unwrap();
     for delta in [8e-6, 13e-6] {
         let flat = bed.solve(0.0, delta, None, None).unwrap().load;
-        let found = bed.solve(0.0, delta, Some(0.0), None).unwrap().load / flat;
+        let found = bed.solve(0.0, delta, Some([0.0; 2]), None).unwrap().load / flat;
         let n = table.exponent(delta, [0.0, 0.0]);
         let share = dented_load(1.0, delta, n) / (delta * delta.sqrt());
         println!("{delta}: {share:.4} of {found:.4}");

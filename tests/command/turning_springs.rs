@@ -128,31 +128,37 @@ fn springs_beyond_their_reach_end_a_run() {
     }
 }
 
-/// Shapes that answer loads swing too fast to be natural motions.
+/// Listed modes against those with all component modes of the shaft, at any limit in the scene.
 #[test]
-fn modes_say_which_of_them_are_beyond_the_natural_shapes() {
+fn modes_are_listed_up_to_where_component_modes_suffice() {
     let place = Place::new();
-    let note_of = |scene: &str, limit: &str| {
+    let of = |limit: &str| {
         let out = place.path("out");
         let set = format!("body.rotor.beam.modes_to={limit}");
-        let output = bearing(&["modes", scene, "--out", out.to_str().unwrap(), "--set", &set]);
+        let shipped = crate::command_line_common::scene("stepped_rotor.toml");
+        let output = bearing(&["modes", &shipped, "--out", out.to_str().unwrap(), "--set", &set]);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
-        let said = said(&output);
-        let note =
-            said.lines().find(|line| line.contains("W16-beyond-kept-modes")).map(str::to_string);
-        let modes = json(out.join("summary.json"))["modes"].as_array().unwrap().clone();
-        let found: Vec<f64> = modes.iter().map(|mode| number(&mode["frequency"])).collect();
-        (note, found)
+        let summary = json(out.join("summary.json"));
+        let frequencies = |list: &serde_json::Value| -> Vec<f64> {
+            list.as_array().unwrap().iter().map(|mode| number(&mode["frequency"])).collect()
+        };
+        assert_eq!(summary["warnings"].as_array().unwrap().len(), 0);
+        (frequencies(&summary["modes"]), frequencies(&summary["rotor"]["whirl"]), said(&output))
     };
-    let shipped = crate::command_line_common::scene("stepped_rotor.toml");
-    for below in ["500 Hz", "5 kHz"] {
-        let (note, found) = note_of(&shipped, below);
-        let note = note.unwrap();
-        let text = note.split_once(": ").unwrap().1;
-        let numbers = text.split([' ', ',']).filter_map(|word| word.parse().ok());
-        let [count, limit, ..] = numbers.collect::<Vec<f64>>()[..] else { panic!("{note}") };
-        let beyond = found.iter().filter(|frequency| **frequency > limit).count();
-        assert!(beyond > 0 && beyond as f64 == count, "{note}: {found:?}");
+    let (all, whirls, text) = of("10 MHz");
+    assert!(!text.contains("are not listed"), "{text}");
+    for limit in [0.0, 300.0, 1000.0, 1700.0, 3000.0, 5000.0, 8000.0, 19000.0] {
+        let (found, whirl, text) = of(&format!("{limit} Hz"));
+        let (_, after) = text.split_once("modes above ").expect(&text);
+        let listed: f64 = after.split(' ').next().unwrap().parse().unwrap();
+        let expected = all.iter().filter(|frequency| **frequency <= listed).count();
+        assert!(listed >= limit && found.len() == expected, "{limit}: {listed} {found:?}");
+        let off = |(found, exact): (&f64, &f64)| found / exact - 1.0;
+        let most = found.iter().zip(&all).map(off).fold(0.0, f64::max);
+        let whirl =
+            whirl.iter().zip(&whirls).map(off).fold(0.0f64, |most, off| most.max(off.abs()));
+        println!("{limit} Hz: {expected} modes up to {listed} Hz, {most:.1e}, whirl {whirl:.1e}");
+        assert!(most <= 1e-3 && whirl <= 1e-3, "{limit}: {most:e} {whirl:e}");
     }
 }
 

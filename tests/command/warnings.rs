@@ -227,14 +227,40 @@ fn of_pictures() {
     assert_raised("W18", "statics", &loose("-1e-4 N"), &loose("-100 N"));
 }
 
+/// An outer race that follows a step of the load with a time constant of 50 ms, and one that does in a millisecond.
+#[test]
+fn of_windows() {
+    let step =
+        "{ load = { ramp = [\"-250 N\", \"-300 N\"], start = \"0 s\", duration = \"1 ms\" } }";
+    let settling = |damping: &str, speed: &str| {
+        let outer = format!(
+            "[outer_race]\nmotion = \"5-dof\"\nfoundation = {{ stiffness = {{ x = \"1e8 N/m\", y = \"1e8 N/m\", z = \"2e6 N/m\", \
+             tilt_y = \"1e5 N m/rad\", tilt_z = \"1e5 N m/rad\" }}, damping = {{ z = \"{damping}\" }} }}\n[ball_forces]"
+        );
+        let numerics = "end = \"60 ms\"\nstep = \"2 us\"\noutput_interval = \"0.1 ms\"";
+        let text = scene(numerics, "plots = []\nwindow_start = \"25 ms\"");
+        let text = changed(&text, "{ load = \"-250 N\" }", step);
+        changed(&changed(&text, "[ball_forces]", &outer), "1000 rpm", speed)
+    };
+    let slow = settling("1e5 N s/m", "20000 rpm");
+    assert_raised("W19", "run", &slow, &settling("1000 N s/m", "20000 rpm"));
+    // In two turns nobody takes means.
+    assert_raised("W19", "run", &slow, &settling("1e5 N s/m", "3000 rpm"));
+}
+
+#[test]
+fn of_reduced_housings() {
+    let numerics = "[numerics]\nend = \"0.4 ms\"\noutput_interval = \"20 us\"\n";
+    let pressed = |bore_load: &str| {
+        let housing = format!("method = \"reduced\"\n{bore_load}");
+        let pressing = "z = { displacement = { ramp = [\"0 um\", \"-12 um\"], start = \"0 s\", duration = \"0.3 ms\" } }";
+        changed(&scene_text(&housing, numerics), "z = { load = \"-250 N\" }", pressing)
+    };
+    assert_raised("W16", "run", &pressed(""), &pressed("bore_load = \"5 kN\""));
+}
+
 #[test]
 fn of_modes() {
-    let rotor = |below: &str| {
-        let damping = "damping = \"20 1/s\"";
-        with("stepped_rotor.toml", damping, &format!("{damping}\nmodes_to = \"{below}\""))
-    };
-    let rigid = read(Path::new(&shipped("shaft_back_to_back.toml")));
-    assert_raised("W16", "modes", &rotor("500 Hz"), &rigid);
     let damped = "{ y = \"100 N s/m\", z = \"100 N s/m\" }";
     let on = |ends: &str| disc(ends, damped, "end = \"1 ms\"");
     assert_raised("W17", "modes", &on("from = \"disc\""), &on("from = \"ground\"\nto = \"disc\""));

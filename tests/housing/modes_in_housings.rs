@@ -7,6 +7,7 @@ use crate::housing_common::*;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::mesh::Order;
+use bearing_dynamics::mesh::tet_mesh::Elements;
 use bearing_dynamics::solids::condensation::{CondensedBore, condense};
 use bearing_dynamics::solids::fixed_interface_modes::{
     Natural, natural_modes_of, vibrating_housing,
@@ -14,7 +15,7 @@ use bearing_dynamics::solids::fixed_interface_modes::{
 use bearing_dynamics::solids::model::SolidModel;
 use bearing_dynamics::solids::tangent::{PRESCRIBED, pattern, stiffness};
 use bearing_dynamics::vibrations::quasi_static_limit::{MovingBody, housing_mass, modes};
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 
 /// Squares of frequencies (1/s²) of both races and of all nodes, contact springs of the nodes that touch between them; and for
@@ -62,24 +63,40 @@ fn all_nodes(
         }
         whole.ger(Penalty::default().of_node(node.area), &closes, &closes, 1.0);
     }
-    let mut mass = vec![0.0; count];
+    let mut mass = DMatrix::<f64>::zeros(count, count);
     for (of, body) in bodies.iter().enumerate() {
         let of_body = &body.inertia;
         let (m, turning) = (of_body.mass, of_body.transverse);
-        mass[5 * of..5 * of + 5].copy_from_slice(&[m, m, m, turning, turning]);
+        for (i, own) in [m, m, m, turning, turning].into_iter().enumerate() {
+            mass[(5 * of + i, 5 * of + i)] = own;
+        }
     }
-    for (node, of) in unknowns.of.iter().enumerate() {
-        of.iter().filter(|at| **at != PRESCRIBED).for_each(|at| mass[races + at] = bore.mass[node]);
+    // Consistent: a tenth of an element's mass at each of its nodes, a twentieth between two.
+    let Elements::Linear(list) = &model.problem.elements else { panic!("four nodes") };
+    for nodes in list {
+        let [a, b, c, d] = nodes.map(|node| Vector3::from(model.problem.nodes[node as usize]));
+        let share = model.problem.density * (b - a).cross(&(c - a)).dot(&(d - a)).abs() / 120.0;
+        for (one, other) in nodes.iter().flat_map(|one| nodes.map(|other| (*one, other))) {
+            let [rows, columns] = [one, other].map(|node| unknowns.of[node as usize]);
+            for (row, column) in rows.into_iter().zip(columns) {
+                if row != PRESCRIBED && column != PRESCRIBED {
+                    mass[(races + row, races + column)] +=
+                        if one == other { 2.0 * share } else { share };
+                }
+            }
+        }
     }
     let held = |i: &usize| *i >= races || bodies[*i / 5].free[*i % 5];
     let kept: Vec<usize> = (0..count).filter(held).collect();
-    let picked = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
-        whole[(kept[i], kept[j])] / (mass[kept[i]] * mass[kept[j]]).sqrt()
-    });
-    let eigen = SymmetricEigen::new(picked);
+    let picked = |of: &DMatrix<f64>| of.select_rows(&kept).select_columns(&kept);
+    let lower = picked(&mass).cholesky().unwrap().l();
+    let half = lower.solve_lower_triangular(&picked(&whole)).unwrap();
+    let both = lower.solve_lower_triangular(&half.transpose()).unwrap();
+    let eigen = SymmetricEigen::new((&both + both.transpose()) * 0.5);
     let first = kept.iter().position(|i| *i >= races).unwrap();
     let mut found: Vec<(f64, f64)> = (0..kept.len())
         .map(|k| {
+            // No mass couples races and housing, so that the factor has two blocks.
             let shape = eigen.eigenvectors.column(k);
             (eigen.eigenvalues[k], shape.rows_range(first..).norm_squared())
         })
@@ -108,9 +125,10 @@ fn a_bearing_swings_with_all_of_its_housing() {
         let inner = hollow_cylinder(15e-3, 20e-3, 20e-3, 7850.0);
         let outer = hollow_cylinder(32e-3, 35.5e-3, 20e-3, 7850.0);
         let bodies = moving([inner, outer], [true; 5]);
-        let expected = all_nodes(&model, &bore, &state, &bodies);
+        let all = all_nodes(&model, &bore, &state, &bodies);
+        let expected = &all;
         let off = |(square, _): (f64, f64), found: f64| (found / square).sqrt() - 1.0;
-        let follows = housing_mass(search.bore(), OUTER);
+        let follows = housing_mass(search.bore(), &model, OUTER);
         let alone = modes(&state.stiffness, &bodies, &[follows]);
         let by_following = off(expected[number], alone[number].square);
         assert!(by_following >= followed, "{by_following:e}");
@@ -118,12 +136,12 @@ fn a_bearing_swings_with_all_of_its_housing() {
         for count in [6, 12, 24, 48] {
             let (natural, first_left_out) =
                 natural_modes_of(&model, &bore, Natural::Lowest(count)).unwrap();
-            let swinging = vibrating_housing(search.bore(), OUTER, &natural, 0.0);
+            let swinging = vibrating_housing(search.bore(), &model, OUTER, &natural, 0.0);
             assert_eq!(swinging.held.len(), count);
             let limit = (TAU * first_left_out).powi(2);
             let found = modes(&state.stiffness, &bodies, &[swinging]);
             let mut told = 0;
-            for (mode, expected) in found.iter().zip(&expected) {
+            for (mode, expected) in found.iter().zip(expected) {
                 let error = off(*expected, mode.square);
                 let allowed = match expected.0 / limit {
                     part if part <= 0.25 => 2e-3,
@@ -131,9 +149,13 @@ fn a_bearing_swings_with_all_of_its_housing() {
                     _ => break,
                 };
                 // Contact is ten thousand times as stiff as the housing.
-                assert!((-1e-10..=allowed).contains(&error), "{count}: {error:e} {expected:?}");
+                assert!((-1e-9..=allowed).contains(&error), "{count}: {error:e} {expected:?}");
                 let share = (mode.housings[0] - expected.1).abs();
-                assert!(error > 2e-3 || share <= 1e-2, "{count}: {share} {expected:?}");
+                // An error mixes neighbours by its part of their distance.
+                let apart = |near: usize| (all[near].0 / all[told].0 - 1.0).abs() / 2.0;
+                let apart = if told == 0 { apart(1) } else { apart(told - 1).min(apart(told + 1)) };
+                let mixed = 1e-2 + 2.0 * error / apart;
+                assert!(error > 2e-3 || share <= mixed, "{count}: {share} {expected:?}");
                 told += 1;
             }
             assert!(told >= 5, "{count}: {told}");

@@ -128,7 +128,7 @@ fn turn(
     let inner_race = hollow_cylinder(15e-3, 22e-3, 12e-3, Material::STEEL.density);
     let last = &moments[POINTS - 1].state;
     let (natural, _) = lowest_modes(&solid, &bore, 4)?;
-    let housing = vibrating_housing(search.bore(), OUTER, &natural, 0.0);
+    let housing = vibrating_housing(search.bore(), &solid, OUTER, &natural, 0.0);
     let bodies = moving([inner_race, outer_race], [true; 5]);
     let lowest = lowest_frequency(&last.stiffness, &bodies, &[housing]).unwrap_or(f64::NAN);
     let drawn = pictures.map(|magnification| {

@@ -238,7 +238,7 @@ fn frequency_ratio_squared(shaft: &Shaft, bores: &[CondensedBore]) -> Result<f64
         let race = bodies.iter().position(|of| of.body == body).unwrap_or(0);
         // As many natural modes as the command takes.
         let (natural, _) = lowest_modes(&housing.setup.model, seat.bore, 4)?;
-        masses.push(vibrating_housing(bore, race, &natural, seat.damping));
+        masses.push(vibrating_housing(bore, &housing.setup.model, race, &natural, seat.damping));
     }
     let lowest = lowest_frequency(&found.solution.with_shapes, &bodies, &masses);
     Ok((PERIOD * lowest.unwrap_or(f64::NAN)).powi(-2))

@@ -44,6 +44,8 @@ mod critical_speed_4_3_4;
 pub mod cylinder_on_block_table_2_1;
 #[path = "../dent_3_4_4/case.rs"]
 mod dent_3_4_4;
+#[path = "../dent_half_space/case.rs"]
+mod dent_half_space;
 #[path = "../flexible_shaft_4_3_3/case.rs"]
 mod flexible_shaft_4_3_3;
 #[path = "../free_ring_modes/case.rs"]
@@ -146,6 +148,7 @@ pub const CASES: &[Case] = &[
     misalignment_moment::CASE,
     misalignment_on_bushing_3_4_5::CASE,
     dent_3_4_4::CASE,
+    dent_half_space::CASE,
     bore_friction_4_2_4_2::CASE,
     rotor_in_housings_4_3::CASE,
     rotor_resonance_4_3_4::CASE,

@@ -45,7 +45,13 @@ impl FrequencyRatio {
             let body = seat.body(&problem.assembly);
             let Some(race) = bodies.iter().position(|of| of.body == body) else { continue };
             let (natural, _) = housing_modes(housing, bore.bore(), NATURAL)?;
-            masses.push(vibrating_housing(bore, race, &natural, seat.damping));
+            masses.push(vibrating_housing(
+                bore,
+                &housing.setup.model,
+                race,
+                &natural,
+                seat.damping,
+            ));
         }
         let lowest = lowest_frequency(&found.solution.with_shapes, &bodies, &masses);
         Ok(lowest.filter(|lowest| *lowest > 0.0).map(|lowest| FrequencyRatio { lowest, fastest }))

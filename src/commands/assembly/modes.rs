@@ -19,7 +19,7 @@ use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly, StaticBody
 use bearing_dynamics::equilibrium::statics::{AssemblySolution, Determinacy};
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::natural_modes::{frequency, moves_most, names, write};
-use bearing_dynamics::output::warnings::{Warning, WarningCode, lines, solid::of_contact_nodes};
+use bearing_dynamics::output::warnings::{lines, solid::of_contact_nodes};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::solids::condensation::CondensedBore;
 use bearing_dynamics::solids::fixed_interface_modes::{
@@ -42,7 +42,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let housings = housings::prepare(document, scene)?;
     let start = Instant::now();
     let bores = housings::condensed(&housings)?;
-    let lists = Lists::of(scene);
+    let lists = Lists::made(scene, Some(with_more_modes(scene).assembly()?));
     let found = housings::equilibrium(&lists, housings::grown(&housings, &bores), None)?;
     let Equilibrium { still, moment, in_bores } = &found;
     let assembly = lists.assembly()?;
@@ -61,27 +61,42 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
             let (natural, beyond) = housing_modes(housing, bore.bore(), NATURAL)?;
             first_left_out = first_left_out.min(beyond);
             let before = housing.name.as_ref().map_or(String::new(), |name| format!("{name}_"));
-            let mass = vibrating_housing(bore, race, &natural, seat.damping);
+            let mass = vibrating_housing(bore, &housing.setup.model, race, &natural, seat.damping);
             of_housings.push((before, mass.held.len()));
             masses.push(mass);
         }
     }
     let solution = &moment.solution;
-    let found = natural_modes(still, solution, &bodies, &masses);
+    let mut found = natural_modes(still, solution, &bodies, &masses);
     if found.is_empty() {
         let hint = "give body.NAME.inertia";
         return Err(format!("{}: a body has no mass. Hint: {hint}", path.display()).into());
     }
+    let first_left_out = assembly
+        .shafts
+        .iter()
+        .fold(first_left_out, |least: f64, shaft| least.min(shaft.shapes.first_omitted / TAU));
+    let limit = ACCURATE * first_left_out;
+    found.retain(|mode| frequency(mode) <= limit);
     let names = names(still, &bodies, assembly, &of_housings);
     let mut text = "mode        frequency, Hz  moves most\n".to_string();
     for (index, mode) in found.iter().enumerate() {
         let most = &names[moves_most(mode)];
         let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
     }
+    if limit.is_finite() {
+        let _ = writeln!(
+            text,
+            "modes above {} Hz are not listed: raise body.NAME.beam.modes_to, or housing.modes_to of a reduced housing, for more",
+            to_digits(limit, 4)
+        );
+    }
     print(&text)?;
     let mut warnings = of_equilibrium(scene, still, solution)?;
     let (spinning, no_whirl) = match spinning(assembly, still, solution, &bodies, &masses) {
-        Ok(Some(whirling)) => (Some(Spinning::new(whirling, !masses.is_empty())?), None),
+        Ok(Some(whirling)) => {
+            (Some(Spinning::new(whirling, !masses.is_empty(), TAU * limit)?), None)
+        }
         Ok(None) => (None, by_torque(assembly)),
         // The modes at rest are valid without whirl.
         Err(why @ RotorError::Uneven { .. }) => (None, Some(why.to_string())),
@@ -97,9 +112,6 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     if let Some(why) = &no_whirl {
         print(&format!("whirl, critical speeds and Campbell diagram not computed: {why}\n"))?;
     }
-    let above = |limit: f64| found.iter().filter(|mode| frequency(mode) > limit).count();
-    warnings.extend(beyond_modes(assembly, above));
-    warnings.extend(beyond_natural(first_left_out, above));
     for (housing, seat) in housings.iter().zip(&moment.solution.seats) {
         warnings.extend(of_contact_nodes(seat).map(|of| of.named(&housing.before())));
     }
@@ -124,8 +136,20 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-/// Natural modes of a housing without a limit in the scene: enough for a pillow block, and cheaper than condensing its bore.
-const NATURAL: usize = 12;
+/// Natural modes of a housing without a limit in the scene; cheaper than condensing its bore.
+const NATURAL: usize = 40;
+/// Modes are listed up to this fraction of the lowest frequency that the component modes of a shaft or housing omit: there
+/// their frequencies are too high by less than 0.1 %; next to that frequency by a few per cent.
+const ACCURATE: f64 = 0.4;
+
+/// The scene with so many component modes of shafts that modes up to `modes_to` are listed.
+fn with_more_modes(scene: &AssemblyScene) -> AssemblyScene {
+    let mut scene = scene.clone();
+    for beam in scene.bodies.iter_mut().filter_map(|body| body.beam.as_deref_mut()) {
+        beam.kept.below /= ACCURATE;
+    }
+    scene
+}
 
 /// Natural modes kept for a housing (the lowest `usual` ones without a limit in the scene), and the frequency of the
 /// first one left out, Hz.
@@ -175,36 +199,6 @@ fn spinning(
         return Ok(None);
     }
     whirling(assembly, still, solution, bodies, masses).map(Some)
-}
-
-/// Warning about modes above the kept modes of a shaft, the one with the lowest limit.
-fn beyond_modes(assembly: &Assembly, above: impl Fn(f64) -> usize) -> Option<Warning> {
-    let limits = assembly.shafts.iter().map(|shaft| (shaft.shapes.cut.above / TAU, shaft.body));
-    let (limit, body) = limits.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let beyond = above(limit);
-    (beyond > 0).then(|| {
-        let text = format!(
-            "{beyond} of the modes, those above {limit:.0} Hz, are above the kept modes of {}, so that their frequencies are too high: raise \
-             body.NAME.beam.modes_to",
-            assembly.bodies[body].name
-        );
-        Warning::new(WarningCode::BeyondKeptModes, text)
-    })
-}
-
-/// Warning about modes near or above the first natural mode (Hz) that a housing leaves out. Below 0.8 of it the error is
-/// less than 1 %.
-fn beyond_natural(first_left_out: f64, above: impl Fn(f64) -> usize) -> Option<Warning> {
-    let limit = 0.8 * first_left_out;
-    let beyond = above(limit);
-    (beyond > 0).then(|| {
-        let text = format!(
-            "{beyond} of the modes, those above {} Hz, are near or above the kept modes of a housing, so that their frequencies are too high by 1 % \
-             and more: raise housing.modes_to of a reduced housing",
-            to_digits(limit, 4)
-        );
-        Warning::new(WarningCode::BeyondKeptModes, text)
-    })
 }
 
 fn moving_bodies(assembly: &Assembly, still: &StaticAssembly) -> Vec<MovingBody> {

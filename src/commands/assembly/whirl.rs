@@ -44,20 +44,23 @@ fn is_whirl(whirl: &Whirl) -> bool {
 }
 
 impl Spinning {
-    pub fn new(whirling: SmallMotionModel, housed: bool) -> Fallible<Spinning> {
+    /// Whirl with frequencies up to `limit`, rad/s.
+    pub fn new(whirling: SmallMotionModel, housed: bool, limit: f64) -> Fallible<Spinning> {
         let top = whirling.top_speed;
         let model = &whirling.model;
         let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / (SPEEDS - 1) as f64).collect();
         let mut whirls = model.whirls(top, 2 * LINES)?;
-        whirls.retain(is_whirl);
+        whirls.retain(|whirl| is_whirl(whirl) && whirl.frequency() <= limit);
         whirls.truncate(LINES);
-        let within = |of: &Critical| of.speed <= 2.0 * top.abs() && is_whirl(&of.whirl);
-        let critical = whirling.critical_speeds(2.0 * top.abs());
+        let fastest = limit.min(2.0 * top.abs());
+        let within = |of: &Critical| of.speed <= fastest && is_whirl(&of.whirl);
+        let critical = whirling.critical_speeds(fastest);
         let critical = critical.map(|all| all.into_iter().filter(within).collect());
         let mut campbell = model.campbell(&speeds, LINES)?;
         // An axial and a radial mode are coupled near their crossing.
         let across = |line: &Vec<Whirl>| line.iter().filter(|whirl| is_whirl(whirl)).count();
-        campbell.lines.retain(|line| 2 * across(line) > line.len());
+        let listed = |line: &Vec<Whirl>| line.iter().all(|whirl| whirl.frequency() <= limit);
+        campbell.lines.retain(|line| 2 * across(line) > line.len() && listed(line));
         let first = campbell.lines.len().min(2);
         let near =
             |line: &Vec<Whirl>| line.iter().any(|whirl| whirl.frequency() <= FAR * top.abs());

@@ -4,6 +4,7 @@ use super::figures::{key_figures, rotation};
 use super::prepared::{Fields, Prepared, SolidOf, SolutionMethod};
 use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::inertia::FrequencyRatio;
+use crate::commands::drift::drifting;
 use crate::commands::warnings::{aliased, of_run};
 use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
@@ -75,6 +76,9 @@ pub(super) fn write_results(
         Prepared::Bearings { lists, .. } => {
             let scene = lists.scene;
             extras.warnings = of_run(scene, session);
+            if !matches!(session.motion, Motion::QuasiStaticSequence(_)) {
+                extras.warnings.extend(drifting(lists.assembly()?, &table));
+            }
             if scene.common().dynamics.plots.contains(&RunPlot::RunUp) {
                 extras.lines.extend(without_run_up(&table).map(|why| format!("note: {why}")));
             }

@@ -55,6 +55,7 @@ pub enum WarningCode {
     BeyondKeptModes,
     WhirlUnstable,
     PictureNotDrawn,
+    StillSettling,
 }
 
 impl WarningCode {
@@ -82,7 +83,7 @@ pub struct Entry {
     pub action: &'static str,
 }
 
-pub const TABLE: [Entry; 18] = [
+pub const TABLE: [Entry; 19] = [
     Entry {
         name: "W01-indeterminate-position",
         title: "Position not determined",
@@ -190,11 +191,10 @@ pub const TABLE: [Entry; 18] = [
     },
     Entry {
         name: "W16-beyond-kept-modes",
-        title: "Result beyond the kept modes",
-        meaning: "A reduced shaft or housing is used outside its range. Either an excitation has a frequency above \
-         those of the kept modes, or the load on the bore exceeds the load for which the static correction \
-         modes were computed.",
-        action: "Keep more modes (`body.NAME.beam.modes_to`, `housing.modes_to`), or raise `housing.bore_load`.",
+        title: "Load on a bore beyond its static correction modes",
+        meaning: "The load on the bore of a reduced housing exceeds the load for which its static correction modes \
+         were computed.",
+        action: "Raise `housing.bore_load`.",
     },
     Entry {
         name: "W17-whirl-unstable",
@@ -207,5 +207,13 @@ pub const TABLE: [Entry; 18] = [
         title: "Picture not drawn",
         meaning: "A picture varies the scene's positions or tilts, and found no equilibrium at one of them. All results are written.",
         action: "Take the picture out of `output.plots`, or fix coordinates that no load determines.",
+    },
+    Entry {
+        name: "W19-still-settling",
+        title: "Motion still settling",
+        meaning: "Loads and speeds are constant over the window, which has ten turns of the inner race or more. The mean position \
+         of the inner race nevertheless changes from its first half to its second by more than it oscillates. Means and spectra of \
+         the window are not those of the settled motion.",
+        action: "Lengthen the run (`numerics.end`) and start the window later (`output.window_start`).",
     },
 ];

@@ -12,6 +12,7 @@ pub mod dense;
 pub mod elastic;
 pub mod elliptic;
 pub mod flexible_shaft;
+pub mod half_space;
 pub mod hertz;
 pub mod hyperdual;
 pub mod lame;
