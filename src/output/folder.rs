@@ -239,7 +239,10 @@ pub fn content(folder: &Path) -> Result<FolderContent, FolderError> {
 fn other_file(folder: &Path) -> Option<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    names.find(|name| !name.ends_with(".partial") && name != ".lock" && name != FIELDS)
+    names.find(|name| {
+        let picture = name.ends_with(".svg") || name.ends_with(".partial");
+        !picture && ![".lock", FIELDS, "curve.csv"].contains(&name.as_str())
+    })
 }
 
 /// Returns whether a record names this program: in a table in summaries, one level deeper in runs with a

@@ -81,9 +81,6 @@ pub enum HousingSetupError {
          deform. Hint: fix another set, or write method = \"rigid\" in [housing]"
     )]
     FixedBore { bore: String, count: usize },
-    #[error("housing: the interference of {:.1} um is too large. Allowed: up to {:.1} um",
-        1e6 * *.interference, 1e6 * *.limit)]
-    FitTooLarge { interference: f64, limit: f64 },
     #[error(
         "solid.load: the housing method `quasi-static` needs constant loads; write method = \
          \"explicit\" in [housing]"
@@ -154,7 +151,6 @@ impl HousingSetupError {
             HousingSetupError::NoNodesUnderRace { .. }
             | HousingSetupError::OneRow { .. }
             | HousingSetupError::CoarseBore { .. } => About::key("housing.width"),
-            HousingSetupError::FitTooLarge { .. } => About::key("housing.outer_radius"),
             HousingSetupError::VaryingLoad { index } => {
                 About::Item { table: "solid.load", index: *index, key: "set" }
             }

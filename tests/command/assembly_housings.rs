@@ -358,7 +358,7 @@ fn one_bearing_in_a_housing_and_one_without() {
     // A common housing is that of both.
     let common = [own[1], fixed[0]];
     let message = refused(&["check", &variant(folder.path(), "common", &common)]);
-    let place = "common.toml:24:";
+    let place = "common.toml:25:";
     for part in [
         "outer_race.right.motion: refused",
         place,

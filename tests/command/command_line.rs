@@ -146,7 +146,7 @@ fn malformed_scenes_are_refused_by_every_command_that_reads_one() {
     let none = text(&folder.join("none.toml"));
     // File, line if there is one, parts of the message.
     let cases: [(String, &str, &[&str]); 10] = [
-        (bad("unit.toml", "\"5.953 mm\"", "5.953"), ":12:", &["has no unit", "Hint: "]),
+        (bad("unit.toml", "\"5.953 mm\"", "5.953"), ":13:", &["has no unit", "Hint: "]),
         (bad("force.toml", "\"-5 um\"", "\"-5 N\""), ":4:", &["unit of force", "length"]),
         (bad("key.toml", "balls = 8", "bals = 8"), ":3:", &["unknown key", "did you mean"]),
         (bad("nan.toml", "\"31.953 mm\"", "\"nan mm\""), ":9:", &["NaN"]),

@@ -158,7 +158,7 @@ fn what_cannot_be_compared_is_named() {
     fs::create_dir(&notes).unwrap();
     fs::write(notes.join("notes.txt"), "mine").unwrap();
     let message = refused(&["pack", &path, "--out", &text(&notes)]);
-    assert!(message.contains("\"notes.txt\", which is not part of a case pack"), "{message}");
+    assert!(message.contains("holds notes.txt"), "{message}");
 }
 
 /// What is not there is said to be missing, and results of different kinds to be of different kinds.

@@ -152,9 +152,7 @@ fn friction_torque_is_reported() {
         assert!((parts - value("power_loss")).abs() <= 1e-12 * parts.abs());
         let speed = summary["kinematics"]["inner_race_speed"]["value"].as_f64().unwrap();
         assert!((value("torque") * speed - value("power_loss")).abs() <= 1e-12 * parts.abs());
-        // The drives put in what friction takes and what is stored.
-        let work = |key: &str| summary["energy"][key]["value"].as_f64().unwrap();
-        assert!(work("work_traction") < 0.0 && work("work_drives") > 0.0);
+        assert!(summary["energy"]["work_traction"]["value"].as_f64().unwrap() < 0.0);
         value("torque")
     };
     let [real, flat] = ["engineering", "dissertation"].map(torque);
@@ -174,7 +172,7 @@ fn balls_loaded_by_their_weight_alone_do_not_count() {
     let path = write(root.path(), "scene.toml", &scene);
     let out = root.path().join("out");
     let loose = "bearing.clearance.radial=20 um";
-    done(&["statics", &path, "--set", loose, "--out", &text(&out)]);
+    done(&["statics", &path, "--set", loose, "--set", "bearing.balls=12", "--out", &text(&out)]);
     let zone = &json(&out.join("summary.json"))["load_zone"];
     let largest = zone["largest_outer_load"]["value"].as_f64().unwrap();
     let table = fs::read_to_string(out.join("series.csv")).unwrap();

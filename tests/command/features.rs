@@ -95,7 +95,7 @@ fn bodies() -> Vec<Body> {
     let bends = changed(&elements, mesh, "");
     let body = |name, scene, vary| Body { name, scene, vary };
     vec![
-        body("bearing alone", [SMOOTH, BEARING, ALONE].concat(), "inner_race.x.load=445 N, 400 N"),
+        body("bearing alone", [BEARING, SMOOTH, ALONE].concat(), "inner_race.x.load=445 N, 400 N"),
         body(
             "solid alone",
             changed(SHORT_RUN, "[numerics]\n", ""),
@@ -111,7 +111,7 @@ fn bodies() -> Vec<Body> {
         body("bearing in a housing, reduced", housed("reduced"), FIT),
         body(
             "several bearings on a shaft",
-            [SMOOTH, BEARING, ENDS, SHAFT].concat(),
+            [BEARING, SMOOTH, ENDS, SHAFT].concat(),
             "outer_race.left.x=-6 um, -3 um",
         ),
         body("several in housings, quasi-static", several("quasi-static"), FIT),

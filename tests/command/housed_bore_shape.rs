@@ -119,7 +119,7 @@ fn straight_edges_are_refused_and_curved_ones_pass_at_any_fineness() {
         let figures =
             [format!("up to {height:.3} um inside"), format!("arc height of {height:.3} um")];
         for part in figures.iter().map(String::as_str).chain([
-            "scene.toml:29:8: housing.bore: the element edges of \"bore\" are straight",
+            "scene.toml:30:8: housing.bore: the element edges of \"bore\" are straight",
             "100 % of it is missing",
             "35.5270 mm",
             "Mesh.SecondOrderLinear = 0",
@@ -164,7 +164,7 @@ fn rounded_coordinates_pass_with_a_caution_and_a_battered_bore_does_not() {
     let message = refused(&place, &with_mesh(&place, &oval, 1, ""));
     let off = ["up to 30.0", "up to 29.9"].iter().any(|figure| message.contains(figure));
     assert!(off, "{message}");
-    for part in ["scene.toml:24:2: housing.bore: nodes of \"bore\" are up to", "17.7", "IT7"] {
+    for part in ["scene.toml:25:2: housing.bore: nodes of \"bore\" are up to", "17.7", "IT7"] {
         assert!(message.contains(part), "{part}: {message}");
     }
 }

@@ -5,6 +5,7 @@ mod assembly_common;
 #[path = "../fuzz_common/mod.rs"]
 mod fuzz_common;
 
+mod key_reach;
 mod quantities;
 mod scene_assembly;
 mod scene_base;

@@ -52,6 +52,8 @@ mod flexible_shaft_4_3_3;
 mod free_ring_modes;
 #[path = "../free_spin_4_2_2/case.rs"]
 mod free_spin_4_2_2;
+#[path = "../friction_torque/case.rs"]
+mod friction_torque;
 #[path = "../hertz_elliptic/case.rs"]
 mod hertz_elliptic;
 #[path = "../housing_equilibrium/case.rs"]
@@ -168,6 +170,7 @@ pub const CASES: &[Case] = &[
     rod_wave::CASE,
     thick_ring_lame::CASE,
     cantilever_timoshenko::CASE,
+    friction_torque::CASE,
     free_ring_modes::CASE,
     cage_modes_table_5_3::CASE,
     telemeter_5_2::CASE,

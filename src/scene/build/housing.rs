@@ -145,11 +145,6 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         FitSize::Interference(interference) => interference,
         FitSize::OuterRadius(race) => race - radius,
     };
-    let limit = LARGEST_FIT * radius;
-    let fits = interference <= limit;
-    if !fits {
-        return Err(HousingSetupError::FitTooLarge { interference, limit });
-    }
     let mut notes = Vec::new();
     notes.extend(overhang(width, ends));
     notes.extend(eccentric_bore(off_centre, interference));
