@@ -156,6 +156,9 @@ pub fn leaning(checks: usize) -> String {
     if checks == 0 { "all".to_string() } else { checks.to_string() }
 }
 
+const WHY_SO_FEW: &str = "Few agree outright, because the source seldom prints the inputs behind a number: a number met with an input of ours is \
+    reproduced under assumption, and one that a converged computation misses is explained.";
+
 /// What holds and what does not, in sentences.
 pub fn lead(report: &Report, totals: &Totals) -> Vec<String> {
     let with = |status: CaseStatus| report.cases.iter().filter(move |case| case.status == status);
@@ -179,17 +182,18 @@ pub fn lead(report: &Report, totals: &Totals) -> Vec<String> {
     let statuses: Vec<(usize, &str)> =
         totals.by_status.iter().map(|of| (of.checks, of.status.word())).collect();
     let mut sentences = vec![
-        format!("{cases}."),
         format!(
             "Of {} that the source prints as results: {}.",
             counted(totals.published_numbers.printed(), "number"),
             in_words(&totals.published_numbers.parts())
         ),
+        WHY_SO_FEW.to_string(),
         format!(
             "Of {} of other books and programs: {}.",
             counted(totals.outside_numbers.printed(), "number"),
             in_words(&totals.outside_numbers.parts())
         ),
+        format!("{cases}."),
         format!(
             "{}: {}. One-sided: {}.",
             counted(totals.checks, "check"),

@@ -4,9 +4,10 @@
 use std::fmt::{Result, Write};
 
 use crate::index::{ChapterEntries, Entry, Role};
+use crate::judge::{CheckReport, Status};
 use crate::report::html::{check_anchor, chip, escape, explanation, nowrap, number, prose};
 use crate::report::totals;
-use crate::report::{CaseStatus, Report, format};
+use crate::report::{CaseReport, CaseStatus, Report, format};
 
 /// The verdict in sentences, and the counts.
 pub fn write_totals(out: &mut String, report: &Report, source: &[ChapterEntries]) -> Result {
@@ -161,13 +162,58 @@ fn write_line(out: &mut String, line: &Entry) -> Result {
     )
 }
 
-/// Published numbers one by one, those that are not reproduced first.
+/// Published numbers: those that are met by case, those that are missed by cause.
+pub fn write_met_and_missed(out: &mut String, report: &Report) -> Result {
+    let met = |case: &CaseReport| {
+        case.count(Status::Reproduced) + case.count(Status::ReproducedUnderAssumption)
+    };
+    writeln!(out, "<section><h2>What is met, and what is missed</h2><ul class=\"met\">")?;
+    for case in report.cases.iter().filter(|case| met(case) > 0) {
+        writeln!(
+            out,
+            "<li><a href=\"#{id}\">{}</a>: {} met</li>",
+            escape(&case.title),
+            format::counted(met(case), "number"),
+            id = escape(&case.id)
+        )?;
+    }
+    // Misses with one explanation in one case are one line.
+    let mut causes: Vec<(&CaseReport, &CheckReport, usize)> = Vec::new();
+    for (case, check) in format::published(report).filter(|(_, of)| of.status == Status::Explained)
+    {
+        let text = |of: &CheckReport| of.explanation.as_ref().map(|of| of.text.clone());
+        let same = |(other, first, _): &&mut (&CaseReport, &CheckReport, usize)| {
+            other.id == case.id && text(first) == text(check)
+        };
+        match causes.iter_mut().find(same) {
+            Some((_, _, count)) => *count += 1,
+            None => causes.push((case, check, 1)),
+        }
+    }
+    writeln!(
+        out,
+        "</ul><table class=\"causes\"><thead><tr><th>Cause of a miss</th><th class=\"number\">Numbers</th><th>Case</th></tr></thead><tbody>"
+    )?;
+    for (case, check, count) in causes {
+        let text = check.explanation.as_ref().map_or("", |of| of.text.as_str());
+        writeln!(
+            out,
+            "<tr><td>{}</td><td class=\"number\" data-name=\"numbers\">{count}</td><td><a href=\"#{id}\">{id}</a></td></tr>",
+            prose(text),
+            id = escape(&case.id)
+        )?;
+    }
+    writeln!(out, "</tbody></table></section>")
+}
+
+/// Published numbers one by one, those that are not reproduced first; closed on screen, open on paper.
 pub fn write_published(out: &mut String, report: &Report) -> Result {
     writeln!(out, "<section><h2>Published numbers, one by one</h2>")?;
     let mut listed = format::published(report).peekable();
     if listed.peek().is_none() {
         return writeln!(out, "<p>None in this run.</p></section>");
     }
+    writeln!(out, "<details class=\"chapter\"><summary>All numbers</summary>")?;
     writeln!(
         out,
         "<p>Explained and fitted numbers are not reproduced. Where measurements of the source scatter by some per cent, \
@@ -199,7 +245,7 @@ pub fn write_published(out: &mut String, report: &Report) -> Result {
             nowrap(&format::tolerance(check)),
         )?;
     }
-    writeln!(out, "</tbody></table></section>")
+    writeln!(out, "</tbody></table></details></section>")
 }
 
 /// Cases that are no part of this report.

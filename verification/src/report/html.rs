@@ -35,6 +35,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     front::write_totals(out, report, &source)?;
     writeln!(out, "</header>")?;
     front::write_failures(out, report)?;
+    front::write_met_and_missed(out, report)?;
     front::write_published(out, report)?;
     front::write_source(out, &source)?;
     front::write_left_out(out, report)?;
