@@ -149,11 +149,11 @@ fn malformed_scenes_are_refused_by_every_command_that_reads_one() {
     // File, line if there is one, parts of the message.
     let cases: [(String, &str, &[&str]); 10] = [
         (bad("unit.toml", "\"5.953 mm\"", "5.953"), ":13:", &["has no unit", "Hint: "]),
-        (bad("force.toml", "\"-5 um\"", "\"-5 N\""), ":4:", &["unit of force", "length"]),
-        (bad("key.toml", "balls = 8", "bals = 8"), ":3:", &["unknown key", "did you mean"]),
-        (bad("nan.toml", "\"31.953 mm\"", "\"nan mm\""), ":9:", &["NaN"]),
-        (bad("size.toml", "\"20.047 mm\"", "\"-20.047 mm\""), ":6:", &["outside", "Allowed: "]),
-        (bad("syntax.toml", "balls = 8", "balls = = 8"), ":3:", &["not valid TOML"]),
+        (bad("force.toml", "\"-5 um\"", "\"-5 N\""), ":5:", &["unit of force", "length"]),
+        (bad("key.toml", "balls = 8", "bals = 8"), ":4:", &["unknown key", "did you mean"]),
+        (bad("nan.toml", "\"31.953 mm\"", "\"nan mm\""), ":10:", &["NaN"]),
+        (bad("size.toml", "\"20.047 mm\"", "\"-20.047 mm\""), ":7:", &["outside", "Allowed: "]),
+        (bad("syntax.toml", "balls = 8", "balls = = 8"), ":4:", &["not valid TOML"]),
         (write(folder, "empty.toml", ""), ": ", &["empty"]),
         (text(folder), ": ", &["folder", ".toml or .json"]),
         (braces, ": ", &["104857600 bytes"]),

