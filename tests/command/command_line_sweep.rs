@@ -125,15 +125,15 @@ fn a_point_of_an_assembly_is_the_statics_of_its_scene() {
     let out = root.path().join("out");
     let shipped = scene("shaft_back_to_back.toml");
     let keys = ["body.shaft.z.load", "bearing.left.balls"];
-    let values = [["-500 N", "-900 N", "-2 kN"], ["11", "11", "10"]];
-    let vary = [0, 1].map(|i| format!("{}={}", keys[i], values[i].join(", ")));
+    let points = [["-500 N", "11"], ["-900 N", "11"], ["-2 kN", "10"]];
+    let vary = [0, 1].map(|i| format!("{}={}", keys[i], points.map(|point| point[i]).join(", ")));
     let varied = ["--vary", &vary[0], "--vary", &vary[1]];
     done(&[&["sweep", &shipped, "--together", "--out", &text(&out)][..], &varied].concat());
     let sweep = table(&out);
     assert_eq!(column(&sweep, "point").to_vec(), [0.0, 1.0, 2.0]);
-    for point in 0..3 {
+    for (point, values) in points.iter().enumerate() {
         let alone = root.path().join(point.to_string());
-        let set = [0, 1].map(|i| format!("{}={}", keys[i], values[i][point]));
+        let set = [0, 1].map(|i| format!("{}={}", keys[i], values[i]));
         let how = ["--set", &set[0], "--set", &set[1], "--set", "output.plots=[]"];
         done(&[&["statics", &shipped, "--out", &text(&alone)][..], &how].concat());
         let summary: Value =

@@ -150,7 +150,7 @@ impl RawMesh {
             let range = (first..=last).step_by(usize::try_from(step).unwrap_or(usize::MAX));
             return range.filter(|&tag| self.has(elements, tag)).collect();
         }
-        let inside = |tag: &u64| (first..=last).contains(tag) && (tag - first) % step == 0;
+        let inside = |tag: &u64| (first..=last).contains(tag) && (tag - first).is_multiple_of(step);
         match elements {
             true => {
                 self.tet_index.keys().chain(self.numbered.keys()).copied().filter(inside).collect()
