@@ -135,6 +135,7 @@ fn other_value(key: &Key) -> Option<String> {
                 "GPa" => 187.0,
                 "kg" => 3.75,
                 "kg/m^3" => 7123.0,
+                "m/s" => 12.5,
                 _ if key.path.contains("inertia") => 1.7e-3,
                 _ => 1234.5,
             };
