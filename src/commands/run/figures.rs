@@ -122,7 +122,8 @@ pub fn rotation(summary: &Value) -> String {
         }
     }
     let friction = &summary["friction"];
-    if let Some(power) = value(friction, "power_loss") {
+    // None without traction.
+    if let Some(power) = value(friction, "power_loss").filter(|power| *power != 0.0) {
         let torque = value(friction, "torque")
             .map_or(String::new(), |torque| format!(", friction torque {:.4} N mm", 1e3 * torque));
         lines.push(("friction".into(), format!("power loss {power:.4e} W{torque}")));
