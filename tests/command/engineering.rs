@@ -172,7 +172,16 @@ fn balls_loaded_by_their_weight_alone_do_not_count() {
     let path = write(root.path(), "scene.toml", &scene);
     let out = root.path().join("out");
     let loose = "bearing.clearance.radial=20 um";
-    done(&["statics", &path, "--set", loose, "--set", "bearing.balls=12", "--out", &text(&out)]);
+    let said = done(&[
+        "statics",
+        &path,
+        "--set",
+        loose,
+        "--set",
+        "bearing.balls=12",
+        "--out",
+        &text(&out),
+    ]);
     let zone = &json(&out.join("summary.json"))["load_zone"];
     let largest = zone["largest_outer_load"]["value"].as_f64().unwrap();
     let table = fs::read_to_string(out.join("series.csv")).unwrap();
@@ -189,6 +198,14 @@ fn balls_loaded_by_their_weight_alone_do_not_count() {
     );
     assert!(any > counted, "{loads:?}");
     assert_eq!(zone["balls_loaded_outer"], counted);
+    // The printed line counts loads of the inner race, on which balls at the top rest.
+    let inner = column("inner_load");
+    let loads = table.lines().skip(1).map(|row| row.split(',').nth(inner).unwrap());
+    let loads: Vec<f64> = loads.map(|cell| cell.parse().unwrap()).collect();
+    let most = loads.iter().copied().fold(0.0, f64::max);
+    let counted = loads.iter().filter(|load| **load >= 0.01 * most).count();
+    assert!(loads.iter().filter(|load| **load > 0.0).count() > counted, "{loads:?}");
+    assert!(said.contains(&format!("{counted} of 12 balls loaded")), "{counted}: {said}");
 }
 
 #[test]
