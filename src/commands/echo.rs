@@ -195,24 +195,24 @@ pub fn hertz([inner, outer]: [&HertzContact; 2]) -> Echo {
     }))
 }
 
-/// Kinematic frequencies of rolling without slip in one line: in Hz, or per turn of the shaft without a speed.
-pub fn frequency_line(scene: &Scene) -> String {
-    let ratios = kinematic_ratios(scene);
-    let [inner, outer] = [scene.inner_speed, scene.outer_speed]
-        .map(|speed| speed.map(|speed| speed / std::f64::consts::TAU));
-    let has_speed = inner.is_some() || outer.is_some();
-    let outer = outer.unwrap_or(0.0);
-    let relative = if has_speed { inner.unwrap_or(0.0) - outer } else { 1.0 };
-    let named = [
-        ("cage and ball set", (outer + ratios.cage * relative).abs()),
-        ("BPFO", (ratios.ball_pass_outer * relative).abs()),
-        ("BPFI", (ratios.ball_pass_inner * relative).abs()),
-        ("BSF", (ratios.ball_spin * relative).abs()),
-        ("2 BSF", 2.0 * (ratios.ball_spin * relative).abs()),
+/// [`frequencies`] in one line: in Hz, or per turn of the shaft without a speed.
+pub fn frequency_line(scene: &Scene) -> Result<String, ResultsError> {
+    const NAMES: [(&str, &str); 5] = [
+        ("cage and ball set", "cage"),
+        ("BPFO", "ball_pass_outer"),
+        ("BPFI", "ball_pass_inner"),
+        ("BSF", "ball_spin"),
+        ("2 BSF", "twice_ball_spin"),
     ];
-    let texts: Vec<String> = named.iter().map(|(name, of)| format!("{name} {of:.4}")).collect();
-    let unit = if has_speed { "Hz" } else { "per turn of the shaft" };
-    format!("frequencies of rolling without slip: {} {unit}", texts.join(", "))
+    let section = frequencies(scene)?;
+    let in_hertz = section["cage"]["frequency"].is_object();
+    let key = if in_hertz { "frequency" } else { "over_shaft" };
+    let texts = NAMES.map(|(label, name)| {
+        let value = section[name][key]["value"].as_f64().unwrap_or(0.0);
+        format!("{label} {:.4}", value.abs())
+    });
+    let unit = if in_hertz { "Hz" } else { "per turn of the shaft" };
+    Ok(format!("frequencies of rolling without slip: {} {unit}", texts.join(", ")))
 }
 
 /// Kinematic frequencies as ratios to the shaft frequency, and in Hz if a speed is given. If the outer race turns,

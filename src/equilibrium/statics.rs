@@ -439,27 +439,30 @@ pub fn stiffness_to_ground(
             (0..5).filter(|i| body.prescribed(*i).is_none()).map(move |i| 5 * place + i)
         })
         .collect();
-    let own: SMatrix<f64, 5, 5> = whole.fixed_view::<5, 5>(0, 0).into_owned();
-    let others = DMatrix::from_fn(free.len(), free.len(), |i, j| whole[(free[i], free[j])]);
-    let cross = DMatrix::from_fn(free.len(), 5, |i, j| whole[(free[i], j)]);
-    let follows = others.cholesky()?.solve(&cross);
-    Some(own - SMatrix::<f64, 5, 5>::from_fn(|i, j| cross.column(i).dot(&follows.column(j))))
+    let own = eliminated(whole, &[0, 1, 2, 3, 4], &free)?;
+    Some(own.fixed_view::<5, 5>(0, 0).into_owned())
+}
+
+/// Stiffness over the `kept` coordinates with the `free` ones in equilibrium; `None` where these have no stiffness.
+fn eliminated(whole: &DMatrix<f64>, kept: &[usize], free: &[usize]) -> Option<DMatrix<f64>> {
+    let part = |rows: &[usize], columns: &[usize]| {
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| whole[(rows[i], columns[j])])
+    };
+    let cross = part(free, kept);
+    let follows = part(free, free).cholesky()?.solve(&cross);
+    Some(part(kept, kept) - cross.transpose() * follows)
 }
 
 /// Stiffness over the coordinates of bodies, with amplitudes in equilibrium.
 fn of_bodies(whole: &DMatrix<f64>, bodies: usize) -> DMatrix<f64> {
-    let shapes = whole.nrows() - bodies;
-    let own = whole.view((0, 0), (bodies, bodies)).into_owned();
-    if shapes == 0 {
-        return own;
+    let own: Vec<usize> = (0..bodies).collect();
+    let shapes: Vec<usize> = (bodies..whole.nrows()).collect();
+    let alone = || whole.view((0, 0), (bodies, bodies)).into_owned();
+    if shapes.is_empty() {
+        return alone();
     }
-    let bends = whole.view((bodies, bodies), (shapes, shapes)).into_owned();
-    let cross = whole.view((bodies, 0), (shapes, bodies)).into_owned();
     // In a stable equilibrium their stiffness is positive.
-    match bends.cholesky() {
-        Some(factor) => own - cross.transpose() * factor.solve(&cross),
-        None => own,
-    }
+    eliminated(whole, &own, &shapes).unwrap_or_else(alone)
 }
 
 pub(crate) fn check_finite(problem: &StaticProblem) -> Result<(), StaticsError> {

@@ -12,10 +12,8 @@ use crate::assembly::state::{
 use crate::ch2_housing::bearing::ball_contact::{BallContact, are_apart, ball_contact};
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::ch2_housing::bearing::cage::{CageContact, Guidance, guide_contact, pocket_contact};
-use crate::ch2_housing::bearing::contact::{ContactDamping, RaceLaw, normal_load};
-use crate::ch2_housing::bearing::geometry::Raceway;
-use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
-use crate::ch2_housing::bearing::slices::{Motion, Slices};
+use crate::ch2_housing::bearing::contact::{ContactDamping, normal_load};
+use crate::ch2_housing::bearing::slices::Motion;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, scale, sub};
 use crate::members::cage_nodes::{CageNodes, CageNow, Deformation, Touched};
 use crate::members::contacts;
@@ -70,28 +68,6 @@ pub struct ContactForces<'e> {
     pub modes: Option<([&'e [f64]; 2], &'e mut [f64])>,
 }
 
-fn race_law(
-    raceway: &Raceway,
-    hertz: &HertzContact,
-    ball_radius: f64,
-    outward: f64,
-    differential_sliding: bool,
-) -> RaceLaw {
-    // Both surfaces yield alike: the radius of the pressed one is 2 r_b r_g/(r_b + r_g).
-    let curving = 0.25 * (1.0 / ball_radius + 1.0 / raceway.groove_radius);
-    // a ∝ W^(1/3) and W = K δ^(3/2), so a = a(K)·√δ.
-    RaceLaw {
-        centre_axial: raceway.centre_axial,
-        centre_radius: raceway.centre_radius,
-        room: raceway.groove_radius - ball_radius,
-        stiffness: hertz.stiffness,
-        semi_major_factor: contact_ellipse(hertz, hertz.stiffness).semi_major,
-        ellipticity: hertz.ellipticity,
-        curving: if differential_sliding { curving } else { 0.0 },
-        outward,
-    }
-}
-
 impl BallSet {
     pub fn new(
         bearing: &Bearing,
@@ -100,26 +76,11 @@ impl BallSet {
         bodies: &[BodyKinematics],
     ) -> BallSet {
         let geometry = &bearing.geometry;
-        let radius = geometry.ball_radius;
         let (raceway_profiles, no_dents) = match raceway_profile::profiles(bearing) {
             Ok(profiles) => (profiles, None),
             Err(error) => (RacewayProfiles::default(), Some(error)),
         };
-        let [slices, across] =
-            if steps.traction { [bearing.slices, bearing.points_across] } else { [1, 1] };
-        let mut slices = Slices::new(slices, across);
-        let curved = steps.traction && bearing.differential_sliding;
-        slices.across |= curved;
-        let laws = ContactLaws {
-            races: [
-                race_law(&geometry.inner, &bearing.inner_contact, radius, -1.0, curved),
-                race_law(&geometry.outer, &bearing.outer_contact, radius, 1.0, curved),
-            ],
-            ball_radius: radius,
-            traction: bearing.traction.clone(),
-            slices,
-            raceway_profiles,
-        };
+        let laws = ContactLaws::of(bearing, steps, raceway_profiles);
         let damping = match bearing.damping {
             ContactDamping::HuntCrossley { alpha } => 1.5 * alpha,
             ContactDamping::None => 0.0,

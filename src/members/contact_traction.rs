@@ -40,7 +40,7 @@ fn lever(laws: &ContactLaws, overlap: f64) -> f64 {
 fn patch(laws: &ContactLaws, race: usize, overlap: f64) -> Patch {
     let semi_major = laws.races[race].semi_major_factor * overlap.sqrt();
     let semi_minor = semi_major / laws.races[race].ellipticity;
-    Patch { semi_major, semi_minor, curving: laws.races[race].curving }
+    Patch { semi_major, semi_minor, half_curvature: laws.races[race].half_curvature }
 }
 
 fn sliding_of(
@@ -191,7 +191,7 @@ fn lanes_of<const SLOPES: bool>(
 struct Patches {
     semi_major: [f64; LANES],
     semi_minor: [f64; LANES],
-    curving: [f64; LANES],
+    half_curvature: [f64; LANES],
 }
 
 impl Patches {
@@ -201,7 +201,7 @@ impl Patches {
         // A division needed only by points beside the middle of a slice.
         if across {
             self.semi_minor[lane] = patch.semi_minor;
-            self.curving[lane] = patch.curving;
+            self.half_curvature[lane] = patch.half_curvature;
         }
     }
 
@@ -210,7 +210,7 @@ impl Patches {
         Patch {
             semi_major: self.semi_major[lane],
             semi_minor: self.semi_minor[lane],
-            curving: self.curving[lane],
+            half_curvature: self.half_curvature[lane],
         }
     }
 }

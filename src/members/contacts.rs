@@ -3,6 +3,7 @@
 //! Two kernels call the same scalar laws: [`Kernel::Scalar`] contact by contact, [`Kernel::Simd`] over blocks of
 //! [`LANES`] contacts. The order of operations within a contact is the same, so the bits are too.
 
+use crate::assembly::lists::Bearing;
 use crate::assembly::plan::Stage;
 use crate::assembly::plan::counts::Counts;
 use crate::assembly::plan::steps::BearingSteps;
@@ -10,6 +11,8 @@ use crate::assembly::state::{LANES, Layout, POSITION, VELOCITY};
 use crate::ch2_housing::bearing::contact::{
     RaceContact, RaceLaw, damped_load, normal_load, race_contact,
 };
+use crate::ch2_housing::bearing::geometry::Raceway;
+use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::slices::{Slices, Sliding, TractionForce, TractionSlope};
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::sub;
@@ -28,6 +31,55 @@ pub struct ContactLaws {
     pub slices: Slices,
     /// RacewayProfiles of races and balls.
     pub raceway_profiles: RacewayProfiles,
+}
+
+impl ContactLaws {
+    /// Laws of a bearing's contacts, for the steps that are taken.
+    pub fn of(
+        bearing: &Bearing,
+        steps: BearingSteps,
+        raceway_profiles: RacewayProfiles,
+    ) -> ContactLaws {
+        let geometry = &bearing.geometry;
+        let radius = geometry.ball_radius;
+        let [slices, across] =
+            if steps.traction { [bearing.slices, bearing.points_across] } else { [1, 1] };
+        let mut slices = Slices::new(slices, across);
+        let curved = steps.traction && bearing.differential_sliding;
+        slices.across |= curved;
+        ContactLaws {
+            races: [
+                race_law(&geometry.inner, &bearing.inner_contact, radius, -1.0, curved),
+                race_law(&geometry.outer, &bearing.outer_contact, radius, 1.0, curved),
+            ],
+            ball_radius: radius,
+            traction: bearing.traction.clone(),
+            slices,
+            raceway_profiles,
+        }
+    }
+}
+
+fn race_law(
+    raceway: &Raceway,
+    hertz: &HertzContact,
+    ball_radius: f64,
+    outward: f64,
+    differential_sliding: bool,
+) -> RaceLaw {
+    // Both surfaces yield alike: the radius of the pressed one is 2 r_b r_g/(r_b + r_g).
+    let half_curvature = 0.25 * (1.0 / ball_radius + 1.0 / raceway.groove_radius);
+    // a ∝ W^(1/3) and W = K δ^(3/2), so a = a(K)·√δ.
+    RaceLaw {
+        centre_axial: raceway.centre_axial,
+        centre_radius: raceway.centre_radius,
+        room: raceway.groove_radius - ball_radius,
+        stiffness: hertz.stiffness,
+        semi_major_factor: contact_ellipse(hertz, hertz.stiffness).semi_major,
+        ellipticity: hertz.ellipticity,
+        half_curvature: if differential_sliding { half_curvature } else { 0.0 },
+        outward,
+    }
 }
 
 /// Result of one evaluation, pair by pair: index = race · padded + ball.

@@ -103,7 +103,7 @@ mod slices {
 
     /// An ellipse without width.
     fn line(semi_major: f64) -> Patch {
-        Patch { semi_major, semi_minor: 0.0, curving: 0.0 }
+        Patch { semi_major, semi_minor: 0.0, half_curvature: 0.0 }
     }
 
     #[test]
@@ -133,18 +133,18 @@ mod slices {
     fn differential_sliding_resists_rolling_as_in_closed_form() {
         let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-12 };
         let (semi_major, spin, radius) = (1.5e-3, 400.0, 6e-3);
-        let curving = 0.5 / radius;
-        let patch = Patch { semi_major, semi_minor: 0.2e-3, curving };
+        let half_curvature = 0.5 / radius;
+        let patch = Patch { semi_major, semi_minor: 0.2e-3, half_curvature };
         let mut line = 0.3;
         for _ in 0..50 {
             line = 1.0 / 3.0 + line * line * line / 3.0;
         }
         let integral = |to: f64| to.powi(3) / 3.0 - to.powi(5) / 5.0;
         let parts = integral(1.0) - 2.0 * integral(line);
-        let exact = 0.07 * semi_major * semi_major * curving * 1.5 * parts;
+        let exact = 0.07 * semi_major * semi_major * half_curvature * 1.5 * parts;
         assert!((exact / (0.07 * semi_major * semi_major / radius) - 0.08).abs() <= 1e-3);
         // Slip at the centre that leaves no force.
-        let slip = curving * (line * semi_major).powi(2) * spin;
+        let slip = half_curvature * (line * semi_major).powi(2) * spin;
         let sliding =
             Sliding { slip: [slip, 0.0], relative_spin: [0.0, spin, 0.0], ..Sliding::default() };
         let mut errors = Vec::new();
@@ -165,7 +165,8 @@ mod slices {
         let law = TractionLaw::Constant { coefficient: 0.07, regularisation_speed: 1e-12 };
         let sliding = Sliding { relative_spin: [0.0, 0.0, 30.0], ..Sliding::default() };
         for ratio in [0.2, 0.5, 1.0] {
-            let patch = Patch { semi_major: 1.5e-3, semi_minor: 1.5e-3 * ratio, curving: 0.0 };
+            let patch =
+                Patch { semi_major: 1.5e-3, semi_minor: 1.5e-3 * ratio, half_curvature: 0.0 };
             let steps = 1000;
             let angles = (0..steps).map(|i| (PI * i as f64 / steps as f64).sin_cos());
             let integral =

@@ -45,6 +45,9 @@ fn scenes_without_bearings_refuse_keys_of_bearings_and_circulatory_equilibria() 
     let circulatory = "spring.left.stiffness.yz=1e5 N/m";
     let message = refused(&["statics", &path, "--dry", "--set", circulatory]);
     assert!(message.contains("circulatory") && message.contains("left"), "{message}");
+    let varied = "spring.left.stiffness.yz=1e5 N/m, 2e5 N/m";
+    let message = refused(&["sweep", &path, "--vary", varied]);
+    assert!(message.contains("circulatory"), "{message}");
     // Whirl at rest has no damping, circulatory stiffness feeds one direction.
     let said = done(&["modes", &path, "--dry", "--set", circulatory]);
     assert!(said.contains("W17"), "{said}");

@@ -207,7 +207,7 @@ const SET_FORMS: [(&str, &str); 15] = [
     ),
 ];
 
-/// What may stand in a deck beside its body.
+/// Further content of a deck.
 const FURTHER: [(&str, &str); 24] = [
     ("mass", "*ELEMENT, TYPE=MASS, ELSET=m\n100, 5\n*MASS, ELSET=m\n0.01\n"),
     ("rotary inertia", "*ELEMENT, TYPE=ROTARYI, ELSET=i\n100, 5\n"),

@@ -105,7 +105,7 @@ fn all_nodes(
     found
 }
 
-/// Motions are told too fast, by less as more natural shapes take part: by two thousandths at most up to half the frequency of the first
+/// Motions are listed too fast, by less as more natural shapes take part: by two thousandths at most up to half the frequency of the first
 /// one that is left out, by a hundredth up to eight tenths of it. Following the race alone, the housing is 2 % off and has no motion of
 /// its own.
 #[test]
@@ -140,7 +140,7 @@ fn a_bearing_swings_with_all_of_its_housing() {
             assert_eq!(swinging.held.len(), count);
             let limit = (TAU * first_left_out).powi(2);
             let found = modes(&state.stiffness, &bodies, &[swinging]);
-            let mut told = 0;
+            let mut listed = 0;
             for (mode, expected) in found.iter().zip(expected) {
                 let error = off(*expected, mode.square);
                 let allowed = match expected.0 / limit {
@@ -152,13 +152,14 @@ fn a_bearing_swings_with_all_of_its_housing() {
                 assert!((-1e-9..=allowed).contains(&error), "{count}: {error:e} {expected:?}");
                 let share = (mode.housings[0] - expected.1).abs();
                 // An error mixes neighbours by its part of their distance.
-                let apart = |near: usize| (all[near].0 / all[told].0 - 1.0).abs() / 2.0;
-                let apart = if told == 0 { apart(1) } else { apart(told - 1).min(apart(told + 1)) };
+                let apart = |near: usize| (all[near].0 / all[listed].0 - 1.0).abs() / 2.0;
+                let apart =
+                    if listed == 0 { apart(1) } else { apart(listed - 1).min(apart(listed + 1)) };
                 let mixed = 1e-2 + 2.0 * error / apart;
                 assert!(error > 2e-3 || share <= mixed, "{count}: {share} {expected:?}");
-                told += 1;
+                listed += 1;
             }
-            assert!(told >= 5, "{count}: {told}");
+            assert!(listed >= 5, "{count}: {listed}");
             let error = off(expected[number], found[number].square);
             assert!(error <= last, "{count}: {error:e} {last:e}");
             last = error;

@@ -128,7 +128,7 @@ pub struct RaceLaw {
     pub ellipticity: f64,
     /// Depth of the pressed surface below the tangent plane, divided by the square of the distance from the rolling
     /// plane, 1/m: half the mean curvature of ball and groove. Zero without differential sliding.
-    pub curving: f64,
+    pub half_curvature: f64,
     /// Side of the circle on which the groove has material: +1 outside (outer race), −1 inside (inner race).
     pub outward: f64,
 }

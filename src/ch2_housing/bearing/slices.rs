@@ -270,7 +270,7 @@ pub struct Patch {
     /// Along the rolling direction, m. Not used for points on the major axis.
     pub semi_minor: f64,
     /// Depth of the pressed surface below the tangent plane divided by y², 1/m; zero without differential sliding.
-    pub curving: f64,
+    pub half_curvature: f64,
 }
 
 impl Patch {
@@ -278,7 +278,7 @@ impl Patch {
     #[inline(always)]
     pub fn point(&self, middle: f64, offset: f64) -> ContactPoint {
         let y = middle * self.semi_major;
-        ContactPoint { x: offset * self.semi_minor, y, depth: self.curving * y * y }
+        ContactPoint { x: offset * self.semi_minor, y, depth: self.half_curvature * y * y }
     }
 }
 

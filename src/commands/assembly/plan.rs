@@ -51,7 +51,7 @@ pub fn run(document: &Document, scene: &AssemblyScene) -> CommandResult {
     };
     let (items, mut notes) = match (scene.run(), method) {
         (None, _) => {
-            scene.check_smooth()?;
+            scene.check_statics()?;
             (of_statics(lists, &housings)?, Vec::new())
         }
         (Some(settings), Some(HousingMethod::QuasiStatic)) => {

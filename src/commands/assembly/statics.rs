@@ -65,14 +65,7 @@ pub fn find_equilibrium<'s>(
     scene: &'s AssemblyScene,
     read: f64,
 ) -> Fallible<Found<'s>> {
-    scene.check_smooth()?;
-    if let Some(name) = scene.circulatory_spring() {
-        return Err(format!(
-            "spring {name}: `stiffness.yz` and `stiffness.zy` differ, and no equilibrium of an energy has this circulatory \
-             force. Hint: use modes or run"
-        )
-        .into());
-    }
+    scene.check_statics()?;
     let housings = housings::prepare(document, scene)?;
     let start = Instant::now();
     let bores = housings::condensed(&housings)?;
@@ -183,7 +176,7 @@ fn by_name(
 }
 
 impl Found<'_> {
-    fn text(&self) -> String {
+    fn text(&self) -> Fallible<String> {
         let mut of_housings: String = self.settled.iter().map(Settled::text).collect();
         if let Some(matrix) = &self.to_ground {
             of_housings += &table::ground_stiffness(matrix);
@@ -218,7 +211,7 @@ impl Found<'_> {
         }
         for (placed, name) in self.scene.bearings.iter().zip(&self.names) {
             let of = placed.name.as_ref().map_or(String::new(), |_| format!("{name}: "));
-            text += &format!("{of}{}\n", frequency_line(&placed.scene));
+            text += &format!("{of}{}\n", frequency_line(&placed.scene)?);
         }
         if let Some(ratio) = &self.inertia {
             text += &format!("note: inertia left out: {}\n", ratio.text());
@@ -228,7 +221,7 @@ impl Found<'_> {
         {
             text += ONE_BEARING;
         }
-        text
+        Ok(text)
     }
 
     /// Draws the pictures; returns their files, and a warning for each that could not be drawn.
@@ -378,7 +371,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
     let folder = asked.folder(Writes::Statics)?;
     let found = find_equilibrium(asked.document, scene, read)?;
     // Printed first, so that an error in a file loses no result.
-    print(&found.text())?;
+    print(&found.text()?)?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let start = Instant::now();

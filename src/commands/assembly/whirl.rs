@@ -28,8 +28,10 @@ pub struct Spinning {
     pub whirling: SmallMotionModel,
     /// Whirl modes at the scene's speed.
     whirls: Vec<Whirl>,
-    /// Critical speeds up to twice the scene's speed, or the reason for none.
+    /// Critical speeds up to twice the scene's speed and within the listed modes, or the reason for none.
     critical: Result<Vec<Critical>, RotorError>,
+    /// Highest critical speed that is listed, rad/s.
+    critical_to: f64,
     campbell: Campbell,
     /// True if flexible housings take part.
     housed: bool,
@@ -66,7 +68,7 @@ impl Spinning {
             |line: &Vec<Whirl>| line.iter().any(|whirl| whirl.frequency() <= FAR * top.abs());
         let shown = campbell.lines.iter().enumerate().filter(|(i, line)| *i < first || near(line));
         campbell.lines = shown.map(|(_, line)| line.clone()).collect();
-        Ok(Spinning { whirls, critical, campbell, whirling, housed })
+        Ok(Spinning { whirls, critical, critical_to: fastest, campbell, whirling, housed })
     }
 
     /// Suffix of a line for a mode that is not purely radial.
@@ -110,7 +112,11 @@ impl Spinning {
                 self.kind(whirl)
             );
         }
-        let _ = writeln!(text, "\ncritical speeds up to twice this speed, without damping");
+        let _ = writeln!(
+            text,
+            "\ncritical speeds up to {:.1} rpm, without damping",
+            rpm(self.critical_to)
+        );
         match &self.critical {
             Err(why) => {
                 let _ = writeln!(text, "not computed: {why}");

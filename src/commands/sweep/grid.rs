@@ -142,7 +142,11 @@ impl Grid {
                         rigid one has another table; sweep the two by themselves";
             return Err(text.into());
         }
-        self.check_any(|point| still(&Lists::of(&self.scene(document, point)?)).map(|_| ()))
+        self.check_any(|point| {
+            let scene = self.scene(document, point)?;
+            scene.check_statics()?;
+            still(&Lists::of(&scene)).map(|_| ())
+        })
     }
 
     /// The error of the first point if all have one. Looks at up to `LOOKS` points, evenly spread over the grid.

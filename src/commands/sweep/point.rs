@@ -42,7 +42,7 @@ pub fn solve(
 }
 
 fn solve_scene(scene: &AssemblyScene, kept: &mut Kept) -> Result<Vec<f64>, Box<dyn Error>> {
-    scene.check_smooth()?;
+    scene.check_statics()?;
     *kept = std::mem::take(kept).take(scene)?;
     let (housings, bores) = kept.parts();
     let lists = Lists::of(scene);

@@ -18,22 +18,9 @@ use crate::scene::build::motion::{DynamicsError, dynamic_problem};
 use crate::scene::build::sensors::SceneSensor;
 use crate::scene::build::statics::still_lists;
 use crate::scene::resolve::housing_scene::{HousedScene, HousingMethod, HousingSettings};
-use crate::scene::resolve::resolved::CageMethod;
 use crate::scene::resolve::resolved::{DefaultUsed, RunSettings, Scene};
 use crate::scene::resolve::solid_scene::SolidScene;
 use crate::scene::tables::assembly::OWN_RACES;
-use thiserror::Error;
-
-/// An equilibrium of a bore with friction.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error(
-    "housing{of}.friction: refused: an equilibrium with friction depends on how the race came to its position, and \
-      statics omits that. Hint: `bearing run` includes friction; leave `friction` out for an equilibrium of smooth bores"
-)]
-pub struct RoughBore {
-    /// ".left" for a named housing.
-    of: String,
-}
 
 /// Bearings and their bodies, SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -282,57 +269,6 @@ impl AssemblyScene {
     pub fn housing_method(&self) -> Option<HousingMethod> {
         let mut housings = self.bearings.iter().filter_map(|placed| placed.housing.as_ref());
         housings.next().map(|housing| housing.settings.method)
-    }
-
-    /// Checks that no bore has friction, which an equilibrium cannot include.
-    ///
-    /// # Errors
-    ///
-    /// The first bore with friction.
-    pub fn check_smooth(&self) -> Result<(), RoughBore> {
-        let rough = |placed: &&PlacedBearing| {
-            placed.housing.as_ref().is_some_and(|of| of.settings.friction.is_some())
-        };
-        let Some(rough) = self.bearings.iter().find(rough) else { return Ok(()) };
-        let of = rough.name.as_ref().map_or(String::new(), |name| format!(".{name}"));
-        Err(RoughBore { of })
-    }
-
-    /// Name of the first spring whose forces are circulatory, which no equilibrium of an energy has.
-    pub fn circulatory_spring(&self) -> Option<&str> {
-        let mut springs = self.springs.iter();
-        let found = springs.find(|spring| spring.cross.parts()[1] != 0.0);
-        found.map(|spring| spring.name.as_str())
-    }
-
-    /// Returns whether elements of rubber move in a run.
-    pub fn has_bushings_in_elements(&self) -> bool {
-        let mut bushings = self.springs.iter().filter_map(|spring| spring.bushing.as_deref());
-        bushings.any(|of| of.elements.is_some())
-    }
-
-    /// Returns whether elements of a shaft move in a run.
-    pub fn has_shafts_in_elements(&self) -> bool {
-        let mut beams = self.bodies.iter().filter_map(|body| body.beam.as_deref());
-        beams.any(|beam| beam.in_elements.is_some())
-    }
-
-    /// Number of cages whose elements move in a run.
-    pub fn cages_in_elements(&self) -> usize {
-        let cages = self.bearings.iter().filter_map(|of| of.scene.dynamics.flexible_cage.as_ref());
-        cages.filter(|cage| cage.method == CageMethod::Explicit).count()
-    }
-
-    /// Returns whether elements of a cage move in a run.
-    pub fn has_cages_in_elements(&self) -> bool {
-        self.cages_in_elements() > 0
-    }
-
-    /// Returns whether elements of a part beside the housings move in a run.
-    pub fn has_parts_in_elements(&self) -> bool {
-        self.has_bushings_in_elements()
-            || self.has_shafts_in_elements()
-            || self.has_cages_in_elements()
     }
 
     pub fn run(&self) -> Option<&RunSettings> {

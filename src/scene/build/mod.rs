@@ -1,5 +1,6 @@
 //! From a resolved scene to the lists, problems and meshes of the solvers.
 
+pub mod abilities;
 pub mod about;
 pub mod assembly;
 pub mod bore_shape;

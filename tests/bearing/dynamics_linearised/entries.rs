@@ -427,7 +427,8 @@ fn slopes_of_all_slices_are_those_of_their_sum() {
                 let mut sliding = directions;
                 sliding.slip = [size * noise.next(), size * noise.next()];
                 let width = 1e-3;
-                let patch = Patch { semi_major: width, semi_minor: 0.4 * width, curving: 0.0 };
+                let patch =
+                    Patch { semi_major: width, semi_minor: 0.4 * width, half_curvature: 0.0 };
                 sliding.relative_spin = [0.0, 0.0, 0.3 * size / width * noise.next()];
                 let at = |shift: [f64; 3]| {
                     let mut moved = sliding;

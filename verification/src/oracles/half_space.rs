@@ -93,8 +93,8 @@ pub struct Pressed {
 
 /// x ln(y + √(x² + y²)) and so on of the four corners, over π E*.
 fn love([x, y]: [f64; 2], [a, b]: [f64; 2]) -> f64 {
-    let log = |top: f64, bottom: f64, beside: f64| {
-        let (far, near) = (top + top.hypot(beside), bottom + bottom.hypot(beside));
+    let log = |top: f64, bottom: f64, lateral: f64| {
+        let (far, near) = (top + top.hypot(lateral), bottom + bottom.hypot(lateral));
         (far / near).ln()
     };
     let (xp, xm, yp, ym) = (x + a, x - a, y + b, y - b);
