@@ -36,6 +36,7 @@ mod documented_commands;
 mod engineering;
 mod features;
 mod force_balance;
+mod free_shaft;
 mod housed_bore_shape;
 mod housed_command;
 mod housed_command_check;

@@ -5,8 +5,9 @@ use verification::check::{Check, Explanation};
 use verification::context::CaseContext;
 use verification::index::Index;
 use verification::judge::{CheckReport, Status, entries_without_effect, judge};
+use verification::machine::Machine;
 use verification::published::Published;
-use verification::report::{CaseReport, CaseStatus};
+use verification::report::{CaseReport, CaseStatus, Report};
 use verification::runner::{self, Run};
 
 const PUBLISHED: &str = r#"
@@ -267,6 +268,59 @@ lines = [
     assert_eq!(words(&[poor, two])[..2], ["2 failed, 2 not built", "failed"]);
     assert_eq!(index.twins("one", "force"), ["two"]);
     assert!(index.twins("one", "load").is_empty());
+}
+
+/// First the counts and why few agree, then what is met, then misses by cause, then one number after the other.
+#[test]
+fn the_report_says_the_important_first() {
+    let index: Index = toml::from_str(
+        r#"
+[[chapter]]
+number = 2
+title = "Title"
+tables = 1
+figures = 0
+lines = [{ section = "2.1", at = "Table 2.1", role = "result", what = "table", prints = 3, values = ["one/force", "one/load", "one/push"] }]
+"#,
+    )
+    .unwrap();
+    let ids = ["force", "load", "push"];
+    let published = ids.map(|id| PUBLISHED.replace("\"force\"", &format!("\"{id}\""))).concat();
+    let case = Case {
+        id: "one",
+        title: "One",
+        section: "",
+        tier: Tier::Smoke,
+        published: "",
+        run: |_| Ok(()),
+    };
+    let mut one = CaseReport::pending(&case);
+    let mut context = CaseContext::default();
+    let check = |id: &str, ours: f64| Check::new(id, id, "N", ours).published(id);
+    context.check(check("push", 100.5).relative(0.01, "why"));
+    context.check(Check::new("cause", "why", "N", 1.0).closed_form(1.0, "1").relative(0.1, "why"));
+    for id in &ids[..2] {
+        let explained = Explanation::new("meshed too coarsely", 0.1, 0.01, &["cause"]);
+        context.check(check(id, 110.0).relative(0.01, "why").explained(explained));
+    }
+    one.checks = judge(&context, &Published::parse(&published).unwrap()).checks;
+    one.status = one.verdict();
+    assert_eq!(one.status, CaseStatus::Passed, "{:?}", one.checks);
+    let report = Report { machine: Machine::facts(), tier: Tier::Smoke, index, cases: vec![one] };
+    let folder = tempfile::tempdir().unwrap();
+    report.write(folder.path()).unwrap();
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let mut rest = page.as_str();
+    for next in [
+        "Of 3 numbers that the source prints as results: 2 explained, 1 reproduced.",
+        "Few agree outright",
+        "1 number met",
+        "meshed too coarsely</td><td class=\"number\" data-name=\"numbers\">2</td>",
+        "one by one",
+    ] {
+        let found = rest.split_once(next);
+        rest = found.unwrap_or_else(|| panic!("{next:?} is not where it belongs")).1;
+    }
 }
 
 /// What runs a case takes a function of the record alone. Were a case's text of published numbers
