@@ -8,11 +8,11 @@ mod common;
 #[path = "../tests/common/dynamics.rs"]
 mod dynamics;
 
-use bearing_dynamics::assembly::loads::DynamicProblem;
-use bearing_dynamics::assembly::state::{Layout, POSITION};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{Layout, POSITION};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::motion::start;
 use dynamics::{GRAVITY, RPM, bearing, cage, inner_state, traction_laws};

@@ -3,7 +3,8 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve, solve_from};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve, solve_from};
+use bearing_dynamics::members::body::Condition;
 use common::{FREE, problem, table_4_1};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

@@ -4,14 +4,15 @@ mod common;
 #[path = "common/dynamics.rs"]
 mod dynamics;
 
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::ch2_housing::elastomer::named::table_3_1;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::members::beam::{Beam, BeamSegment};
+use bearing_dynamics::members::body::{Drive, RotatingLoad};
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::members::flexible_shaft::{ElasticShaft, ShaftLoad, Unbalance};
 use bearing_dynamics::members::shaft_modes::{Kept, free_shaft};

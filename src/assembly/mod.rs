@@ -1,10 +1,8 @@
-//! The lists that make an assembly: bodies, bearings, connections, loads, state layout, plan and counts.
+//! The lists of all members, their places in the state vector, and speeds and loads at a time.
 
-pub mod channels;
+pub mod bearing_alone;
 pub mod ledger_watch;
 pub mod lists;
-pub mod loads;
-pub mod mount;
-pub mod plan;
-pub mod state;
-pub mod static_lists;
+pub mod places;
+pub mod prescribed;
+pub mod section_attachments;

@@ -1,10 +1,11 @@
 //! Warning about bushings displaced beyond the range of their fit.
 
-use bearing_dynamics::assembly::lists::{Assembly, Mobility};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::equilibrium::lists::StaticAssembly;
 use bearing_dynamics::equilibrium::statics::AssemblySolution;
+use bearing_dynamics::members::body::Mobility;
 use bearing_dynamics::members::connection::Connection;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::rigid_body::{fixed, kinematics_at_mount};
 use bearing_dynamics::numeric::clock::{display_time, to_digits};
 use bearing_dynamics::output::recorder::Recorder;

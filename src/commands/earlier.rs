@@ -2,10 +2,9 @@
 
 use super::{pictures, print};
 use bearing_dynamics::numeric::clock::rounded;
-use bearing_dynamics::output::fields;
 use bearing_dynamics::output::folder::{FolderContent, ResultsFolder, claim, content};
-use bearing_dynamics::output::json;
 use bearing_dynamics::output::state::arrays::remove_arrays;
+use bearing_dynamics::output::{fields, json};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 

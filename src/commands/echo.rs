@@ -4,7 +4,8 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{
     BearingKind, ClearanceThrough, Material, Raceway,
 };
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, HertzModel};
-use bearing_dynamics::equilibrium::statics::{COORDINATE_NAMES, Condition, StaticProblem};
+use bearing_dynamics::equilibrium::statics::{COORDINATE_NAMES, StaticProblem};
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::output::results::{ResultsError, quantity};
 use bearing_dynamics::scene::build::statics::kinematic_ratios;
 use bearing_dynamics::scene::resolve::resolved::RaceDimensions;

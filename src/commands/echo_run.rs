@@ -1,9 +1,6 @@
 //! Motion, numerics and output of a scene as JSON with units.
 
-use bearing_dynamics::assembly::lists::BallMeeting;
-use bearing_dynamics::assembly::loads::{
-    CageBody, Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation,
-};
+use bearing_dynamics::assembly::bearing_alone::{CageBody, DynamicProblem};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
@@ -11,6 +8,8 @@ use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, Tractio
 use bearing_dynamics::ch3_bushing::dent::Dent;
 use bearing_dynamics::ch5_cage::raceway_profile::{RacewayProfile, Spall, Surface, Waviness};
 use bearing_dynamics::equilibrium::statics::COORDINATE_NAMES;
+use bearing_dynamics::members::bearing::BallMeeting;
+use bearing_dynamics::members::body::{Drive, DrivenBody, RotatingLoad, Rotation};
 use bearing_dynamics::motion::simulation::{Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::results::{ResultsError, quantity};

@@ -26,10 +26,10 @@ pub mod sweep;
 pub mod table;
 mod warnings;
 
-use bearing_dynamics::assembly::plan::Item;
-use bearing_dynamics::assembly::plan::counts::StageCounts;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::visible::visible;
+use bearing_dynamics::plan::Item;
+use bearing_dynamics::plan::counts::StageCounts;
 use bearing_dynamics::scene::build::about::About;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Document};
 use serde_json::Value;

@@ -2,8 +2,9 @@
 
 use bearing_dynamics::equilibrium::error::StaticsError;
 use bearing_dynamics::equilibrium::statics::{
-    Condition, StaticOptions, StaticProblem, StaticSolution, solve_from,
+    StaticOptions, StaticProblem, StaticSolution, solve_from,
 };
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::plots::{
     Axis, Curve, LoadZone, PolarPlot, Style, XyPlot, load_zone, polar, xy,

@@ -1,7 +1,7 @@
 //! `bearing plan SCENE`.
 
 use super::{Changes, CommandResult, assembly, print, solid};
-use bearing_dynamics::assembly::plan::Item;
+use bearing_dynamics::plan::Item;
 use bearing_dynamics::scene::{Subject, resolve_subject};
 use std::error::Error;
 use std::path::PathBuf;

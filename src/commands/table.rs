@@ -1,6 +1,6 @@
 //! Printed tables of a static solution.
 
-use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
+use bearing_dynamics::equilibrium::lists::{Place, StaticAssembly};
 use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, BallState, COORDINATE_NAMES, ContactState, StaticSolution,
 };

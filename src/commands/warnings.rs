@@ -1,14 +1,14 @@
 //! Warnings about equilibria and runs of bearings.
 
 use crate::commands::bushing_warnings;
-use bearing_dynamics::assembly::lists::Bearing;
-use bearing_dynamics::assembly::loads::Rotation;
-use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::peak_pressure;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use bearing_dynamics::equilibrium::lists::{Place, StaticAssembly};
 use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, BallState, ContactState, Determinacy,
 };
+use bearing_dynamics::members::bearing::Bearing;
+use bearing_dynamics::members::body::Rotation;
 use bearing_dynamics::motion::extremes::{Extreme, Extremes};
 use bearing_dynamics::motion::validity::FARTHEST_BENT;
 use bearing_dynamics::numeric::clock::{display_time, to_digits};

@@ -1,8 +1,8 @@
 //! Results of each bearing in an equilibrium, ball by ball.
 
-use crate::assembly::static_lists::StaticBearing;
 use crate::ch2_housing::bearing::contact::MeridianContact;
 use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
+use crate::equilibrium::lists::StaticBearing;
 use crate::equilibrium::model::{BearingModel, Evaluation, Model};
 use crate::equilibrium::statics::{BallState, ContactState};
 use crate::members::race_position::InnerRacePosition;

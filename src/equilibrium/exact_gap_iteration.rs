@@ -4,7 +4,7 @@
 //! δ, δ²/2r: some nanometres, for penetrations of some ten. A motion that started there would begin with an impact.
 //! This part depends little on the loads, so that it is taken from one equilibrium to the next until it converges.
 
-use crate::assembly::static_lists::StaticAssembly;
+use crate::equilibrium::lists::StaticAssembly;
 use crate::equilibrium::statics::{
     AssemblySolution, StaticOptions, StaticsError, solve_assembly_in,
 };

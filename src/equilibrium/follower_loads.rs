@@ -1,14 +1,16 @@
 //! Loads in an equilibrium that depend on the position: unbalance, traction on orbiting balls, internal damping of a
 //! bent spinning shaft. They are evaluated at the last position found until they converge.
 
-use crate::assembly::lists::{Assembly, Bearing, Body};
-use crate::assembly::static_lists::{Place, StaticAssembly, StaticBearing};
+use crate::assembly::lists::Assembly;
+use crate::assembly::prescribed::race_speeds;
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient};
 use crate::equilibrium::bearing_tables::BearingState;
-use crate::equilibrium::initial::{is_fixed, prescribed_angle, prescribed_speed, race_speeds};
+use crate::equilibrium::lists::{Place, StaticAssembly, StaticBearing};
 use crate::equilibrium::sections::unbalance_loads;
-use crate::equilibrium::statics::{AssemblySolution, Condition, StaticsError};
+use crate::equilibrium::statics::{AssemblySolution, StaticsError};
 use crate::kinematics::euler::{about, quaternion};
+use crate::members::bearing::Bearing;
+use crate::members::body::{Body, Condition, is_fixed, prescribed_angle, prescribed_speed};
 use nalgebra::{SVector, Vector3};
 
 type Five = SVector<f64, 5>;

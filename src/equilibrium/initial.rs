@@ -3,20 +3,20 @@
 //! One search over the coordinates of all bodies ([`solve_assembly`]), repeated for follower loads
 //! (`FollowerLoadRounds`).
 
-use crate::assembly::lists::{Assembly, Bearing, Body};
-use crate::assembly::loads::{Drive, DrivenBody, Rotation};
-use crate::assembly::mount::Mount;
-use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
-use crate::ch2_housing::bearing::frequencies::ratios;
+use crate::assembly::bearing_alone::DynamicProblem;
+use crate::assembly::lists::{Assembly, INNER};
+use crate::assembly::prescribed::{conditions, orbital_speed};
 use crate::equilibrium::follower_loads::FollowerLoadRounds;
+use crate::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
 use crate::equilibrium::sections;
 use crate::equilibrium::statics::{
-    AssemblySolution, Condition, StaticOptions, StaticsError, solve_assembly,
+    AssemblySolution, StaticOptions, StaticProblem, StaticsError, solve_assembly,
 };
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
+use crate::members::body::{FARTHEST, all_prescribed, is_fixed};
 use crate::members::connection::Connection;
-use crate::motion::validity::FARTHEST;
+use crate::members::mount::Mount;
 use nalgebra::{SVector, Vector3};
 
 type Five = SVector<f64, 5>;
@@ -171,23 +171,6 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
     still
 }
 
-/// Conditions on a body's coordinates at time `t`: drives, weight, rotating load.
-pub fn conditions(assembly: &Assembly, body: &Body, race: &DrivenBody, t: f64) -> [Condition; 5] {
-    let mut others = [0.0; 5];
-    for (other, gravity) in others.iter_mut().zip(assembly.gravity) {
-        *other = race.inertia.mass * gravity;
-    }
-    if let Some(load) = &body.rotating_load {
-        for (other, force) in others.iter_mut().zip(load.force(t)) {
-            *other += force;
-        }
-    }
-    std::array::from_fn(|i| match &race.drives[i] {
-        Drive::Load(profile) => Condition::Load(profile.value(t) + others[i]),
-        Drive::Motion(profile) => Condition::Displacement(profile.value(t)),
-    })
-}
-
 fn fixed_at(at: &[f64; 5]) -> Place {
     Place::Fixed(Pose {
         position: Vector3::new(at[0], at[1], at[2]),
@@ -195,64 +178,26 @@ fn fixed_at(at: &[f64; 5]) -> Place {
     })
 }
 
-/// Coordinates of a body if all are prescribed.
-fn all_prescribed(race: &DrivenBody, t: f64) -> Option<[f64; 5]> {
-    let mut at = [0.0; 5];
-    for (at, drive) in at.iter_mut().zip(&race.drives) {
-        let Drive::Motion(profile) = drive else { return None };
-        *at = profile.value(t);
+impl DynamicProblem {
+    /// The bearing at time `t` with its outer race fixed at its start; a rotating load has its present direction,
+    /// unbalance is omitted.
+    pub fn statics(&self, t: f64) -> StaticProblem {
+        let assembly = self.assembly();
+        let [x, y, z, xi, lambda] = self.outer_start;
+        StaticProblem {
+            geometry: self.geometry,
+            inner_contact: self.inner_contact,
+            outer_contact: self.outer_contact,
+            ball_phase: self.ball_phase,
+            ball_mass: self.ball.mass,
+            gravity: Vector3::from(self.gravity),
+            orbital_speed: orbital_speed(&assembly, &assembly.bearings[0], t),
+            frame: Pose::identity(),
+            outer_pose: Pose {
+                position: Vector3::new(x, y, z),
+                orientation: quaternion(0.0, xi, lambda),
+            },
+            conditions: conditions(&assembly, &assembly.bodies[INNER], &self.inner, t),
+        }
     }
-    Some(at)
-}
-
-/// Returns whether a body has no unknown.
-pub(crate) fn is_fixed(body: &Body) -> bool {
-    body.driven().is_none_or(|race| all_prescribed(race, 0.0).is_some())
-}
-
-/// Prescribed speed of a body about its own axis at `t`, rad/s; zero for a torque drive or a fixed body.
-pub fn prescribed_speed(body: &Body, t: f64) -> f64 {
-    match body.driven().map(|race| &race.rotation) {
-        Some(Rotation::Speed(profile)) => profile.value(t),
-        Some(Rotation::Torque(_)) | None => 0.0,
-    }
-}
-
-/// Angle of the prescribed rotation of a body since t = 0, rad.
-pub(crate) fn prescribed_angle(body: &Body, t: f64) -> f64 {
-    match body.driven().map(|race| &race.rotation) {
-        Some(Rotation::Speed(profile)) => profile.integral(t),
-        Some(Rotation::Torque(_)) | None => 0.0,
-    }
-}
-
-/// Prescribed speeds of both races of a bearing about the bearing's axis, rad/s.
-pub(crate) fn race_speeds(assembly: &Assembly, bearing: &Bearing, t: f64) -> [f64; 2] {
-    of_races(assembly, bearing, |body| prescribed_speed(body, t))
-}
-
-/// A value of both races about the bearing's axis.
-fn of_races(assembly: &Assembly, bearing: &Bearing, of: impl Fn(&Body) -> f64) -> [f64; 2] {
-    bearing.mounts.map(|mount| {
-        let own = of(&assembly.bodies[mount.body]);
-        if mount.reversed { -own } else { own }
-    })
-}
-
-/// Speed of the ball set by pure rolling about the bearing's axis, rad/s.
-pub(crate) fn orbital_speed(assembly: &Assembly, bearing: &Bearing, t: f64) -> f64 {
-    rolled(bearing, race_speeds(assembly, bearing, t))
-}
-
-/// Angle of the ball set about the bearing's axis by pure rolling since t = 0, rad.
-pub fn orbital_angle(assembly: &Assembly, bearing: &Bearing, t: f64) -> f64 {
-    rolled(bearing, of_races(assembly, bearing, |body| prescribed_angle(body, t)))
-}
-
-/// Rotation of the ball set from those of the inner and the outer race.
-fn rolled(bearing: &Bearing, [inner, outer]: [f64; 2]) -> f64 {
-    let g = &bearing.geometry;
-    let ratio = ratios(g.ball_count, g.ball_radius, g.pitch_radius, g.contact_angle).cage;
-    // Both surfaces move past the balls: the outer race has the rest.
-    if outer == 0.0 { ratio * inner } else { ratio * inner + (1.0 - ratio) * outer }
 }

@@ -1,18 +1,17 @@
 //! Model of an equilibrium search: bodies, their coordinates and axes, and an evaluation.
 
-use crate::assembly::plan;
-use crate::assembly::plan::statics::StaticSteps;
-use crate::assembly::static_lists::{
+use crate::equilibrium::bearing::planes;
+use crate::equilibrium::housing_fit::SeatPlace;
+use crate::equilibrium::lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticSection, StaticShaft,
 };
+use crate::equilibrium::plan::{ASKED_FOR, StaticSteps, items};
+use crate::equilibrium::shaft::SectionPlace;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::members::flexible_shaft::Section;
 use crate::members::race_position::InnerRacePosition;
 use crate::members::static_ball::{BallContacts, BallPlane, SettledBall};
-use crate::members::static_bearing::planes;
-use crate::members::static_housing_fit::SeatPlace;
-use crate::members::static_shaft::SectionPlace;
 use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector3};
 
 pub(crate) type Five = SVector<f64, 5>;
@@ -130,7 +129,7 @@ impl<'a> Model<'a> {
                 coordinates += 5;
             }
         }
-        let plan = plan::statics::items(assembly, Vec::new(), plan::statics::ASKED_FOR);
+        let plan = items(assembly, Vec::new(), ASKED_FOR);
         let steps = StaticSteps::new(&plan, assembly);
         let bearings = assembly.bearings.iter().zip(&steps.ball_forces);
         let bearings = bearings.map(|(bearing, [weighed, flung])| {

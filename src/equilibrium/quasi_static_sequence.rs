@@ -1,29 +1,30 @@
 //! Quasi-static sequence of bearings, bodies and condensed housings: one equilibrium after the other.
 //!
 //! Balls orbit at the cage speed of pure rolling; inertia is omitted except for centrifugal forces of balls.
-//! [`crate::vibrations::quasi_static_limit`] estimates the omitted part.
+//! [`crate::equilibrium::quasi_static_limit`] estimates the omitted part.
 
-use crate::assembly::lists::{Assembly, Body};
-use crate::assembly::loads::Drive;
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::StageCounts;
-use crate::assembly::static_lists::{Place, StaticAssembly, StaticBody, StaticSeat};
+use crate::assembly::lists::Assembly;
+use crate::assembly::prescribed::{conditions, orbital_angle};
 use crate::ch2_housing::bore_contact::Penalty;
-use crate::equilibrium::initial::{conditions, orbital_angle, static_assembly};
-use crate::equilibrium::statics::{AssemblySolution, Condition, StaticsError};
+use crate::equilibrium::initial::static_assembly;
+use crate::equilibrium::lists::{Place, StaticAssembly, StaticBody, StaticSeat};
+use crate::equilibrium::quasi_static_limit::MovingBody;
+use crate::equilibrium::statics::{AssemblySolution, StaticsError};
 use crate::equilibrium::warm_started_search::{
     SearchMemory, WarmStartedSearch, load_of_balls, unbalanced,
 };
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
 use crate::kinematics::vec3::{Vec3, scale};
+use crate::members::body::{Body, Condition, Drive};
 use crate::members::flexible_shaft::{Bend, Section};
+use crate::members::mount::Mount;
 use crate::members::rigid_body::{BodyKinematics, fixed, kinematics_at_mount, tilts_of};
 use crate::numeric::profile::Profile;
+use crate::plan::Stage;
+use crate::plan::counts::StageCounts;
 use crate::solids::bore_equilibrium::{Axial, BoreError, Fit, RaceLoad};
 use crate::solids::condensation::CondensedBore;
-use crate::vibrations::quasi_static_limit::MovingBody;
 use nalgebra::Vector3;
 use thiserror::Error;
 

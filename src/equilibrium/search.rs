@@ -4,18 +4,18 @@
 //! Each bearing, connection, shaft and housing fit adds energy, force and stiffness over the coordinates of its bodies,
 //! with its own unknowns eliminated: balls in equilibrium, bore nodes in contact or not.
 
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::StageCounts;
-use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBearing};
+use crate::equilibrium::bearing::add_bearing;
+use crate::equilibrium::connection::add_connection;
+use crate::equilibrium::housing_fit::add_seat;
+use crate::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticBearing};
 use crate::equilibrium::model::{Evaluation, Five, Model};
+use crate::equilibrium::shaft::{add_curvature, add_shaft, onto_unknowns, sections};
 use crate::equilibrium::start;
 use crate::equilibrium::statics::{StaticOptions, StaticsError};
 use crate::members::connection::Connection;
 use crate::members::static_ball::energy_noise;
-use crate::members::static_bearing::add_bearing;
-use crate::members::static_connection::add_connection;
-use crate::members::static_housing_fit::add_seat;
-use crate::members::static_shaft::{add_curvature, add_shaft, onto_unknowns, sections};
+use crate::plan::Stage;
+use crate::plan::counts::StageCounts;
 use crate::solids::bore_equilibrium::BoreSearch;
 use nalgebra::{DMatrix, DVector, Vector3};
 

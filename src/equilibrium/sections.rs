@@ -1,13 +1,11 @@
 //! Flexible bodies in the static problem of an assembly: a section for each mount, load and unbalance.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::mount::Mount;
-use crate::assembly::static_lists::{
-    Place, StaticAssembly, StaticBody, StaticSection, StaticShaft,
-};
-use crate::equilibrium::initial::{prescribed_angle, prescribed_speed};
+use crate::equilibrium::lists::{Place, StaticAssembly, StaticBody, StaticSection, StaticShaft};
 use crate::kinematics::euler::{about, quaternion};
+use crate::members::body::{prescribed_angle, prescribed_speed};
 use crate::members::flexible_shaft::{Section, Unbalance};
+use crate::members::mount::Mount;
 use nalgebra::{SVector, Vector3};
 
 type Five = SVector<f64, 5>;

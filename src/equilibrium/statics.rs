@@ -5,34 +5,26 @@
 //! cold start; the balls are in equilibrium at every evaluation, so that the bodies'
 //! coordinates are the only unknowns of the outer loop. A bearing alone is a [`StaticProblem`].
 
-pub use crate::equilibrium::error::StaticsError;
-
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::counts::StageCounts;
-use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::equilibrium::bearing_tables::{BearingState, bearing_state};
+use crate::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticBearing, StaticBody};
 use crate::equilibrium::model::{Evaluation, Model};
 use crate::equilibrium::search::Search;
 use crate::equilibrium::verdict::{FAR, Modes};
 use crate::kinematics::Pose;
+use crate::members::body::Condition;
+use crate::members::mount::Mount;
 use crate::members::rigid_body::{fixed, kinematics_at_mount};
+use crate::plan::counts::StageCounts;
 use crate::solids::bore_equilibrium::{BoreSearch, BoreState};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector, Vector3};
+
+pub use crate::equilibrium::error::StaticsError;
 
 /// The five coordinates of a race, in this order: x, y, z (m), tilt_y, tilt_z (rad). The tilts are
 /// the Euler angles ξ and λ of (2.16) with η = 0.
 pub const COORDINATE_NAMES: [&str; 5] = ["x", "y", "z", "tilt_y", "tilt_z"];
-
-/// What is prescribed for one coordinate of the inner race.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Condition {
-    /// Applied force (N) or moment (N·m) on the inner race; the coordinate is unknown.
-    Load(f64),
-    /// Prescribed displacement (m) or tilt (rad); the reaction is unknown.
-    Displacement(f64),
-}
 
 /// A bearing, the pose of its outer race and the conditions on its inner race.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,12 +1,12 @@
 //! Checks of an equilibrium or a search: bodies or balls that leave their bearing, directions without stiffness.
 
-use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBearing};
 use crate::ch2_housing::bearing::contact::normal_load;
+use crate::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticBearing};
 use crate::equilibrium::model::{Evaluation, Five};
 use crate::equilibrium::search::Search;
+use crate::equilibrium::shaft::SectionPlace;
 use crate::equilibrium::statics::{COORDINATE_NAMES, Determinacy, StaticsError};
 use crate::members::static_ball::overlap_of_races;
-use crate::members::static_shaft::SectionPlace;
 use crate::solids::bore_equilibrium::BoreState;
 use nalgebra::{DVector, SymmetricEigen, Vector3};
 

@@ -5,8 +5,8 @@
 //! slightly out of the outer race's meridian planes. The cage is on the outer race, so that the load on the inner race
 //! arrives at the bore completely.
 
-use crate::assembly::static_lists::StaticAssembly;
 use crate::ch2_housing::bore_contact::Penalty;
+use crate::equilibrium::lists::StaticAssembly;
 use crate::equilibrium::quasi_static_sequence::QuasiStaticFit;
 use crate::equilibrium::statics::{
     AssemblySolution, BallState, StaticOptions, StaticsError, solve_assembly_in,

@@ -1,28 +1,28 @@
 //! One bearing of an assembly with its constants and working memory: contacts of its balls with both races, each other
 //! and the cage.
 
-use crate::assembly::lists::Bearing;
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::plan::steps::BearingSteps;
-use crate::assembly::state::{
-    LANES, LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
-};
 use crate::ch2_housing::bearing::ball_contact::{BallContact, are_apart, ball_contact};
-use crate::ch2_housing::bearing::cage::AxisMotion;
-use crate::ch2_housing::bearing::cage::{CageContact, Guidance, guide_contact, pocket_contact};
+use crate::ch2_housing::bearing::cage::{
+    AxisMotion, CageContact, Guidance, guide_contact, pocket_contact,
+};
 use crate::ch2_housing::bearing::contact::{ContactDamping, normal_load};
 use crate::ch2_housing::bearing::slices::Motion;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, scale, sub};
+use crate::members::bearing::Bearing;
 use crate::members::cage_nodes::{CageNodes, CageNow, Deformation, Touched};
-use crate::members::contacts;
 use crate::members::contacts::{ContactLaws, ContactTable, Kernel, Want, Work, lane};
 use crate::members::dent_table::DentError;
-use crate::members::raceway_profile;
+use crate::members::mount::Mount;
 use crate::members::raceway_profile::RacewayProfiles;
 use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
-use crate::members::section_attachments::{SectionAttachment, kinematics_at_attachment};
+use crate::members::section_attachment::{SectionAttachment, kinematics_at_attachment};
+use crate::members::state::{
+    LANES, LEDGER, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
+};
+use crate::members::steps::BearingSteps;
+use crate::members::{contacts, raceway_profile};
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use nalgebra::Vector3;
 
 pub struct BallSet {

@@ -3,12 +3,12 @@
 //! X is the axis, Z up. The lateral coordinates of a station are y, z (m) and the rotations about Y and Z (rad),
 //! right-handed: in pure bending turn_z = dy/dx and turn_y = −dz/dx. With spin Ω about X the equation of motion is
 //! M q̈ + Ω G q̇ + K q = loads (N, N, N·m, N·m); axial stretch is a separate bar. The same matrices follow from
-//! tetrahedra condensed onto the stations ([`crate::solids::condensed_shaft`]), if a shaft has a mesh.
+//! tetrahedra condensed onto the stations ([`crate::members::condensed_shaft`]), if a shaft has a mesh.
 
 use crate::ch4_rotor::beam::{Element, NODES, PlaneMatrix, Section, ShearCoefficient, shortening};
 use crate::ch4_rotor::disc;
-use crate::solids::condensed_shaft::SolidShaftError;
-use crate::solids::meshed_shaft::{ShaftMesh, stations as within};
+use crate::members::condensed_shaft::SolidShaftError;
+use crate::members::meshed_shaft::{ShaftMesh, stations as within};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 

@@ -4,7 +4,6 @@
 //! a pocket is passed over while its ball is farther from the wall than its nodes can be displaced, and of the land only
 //! the sectors towards which the cage is displaced are searched.
 
-use crate::assembly::state::BodyState;
 use crate::ch2_housing::bearing::cage::{AxisMotion, CageContact};
 use crate::ch5_cage::node_contact::{
     Friction, NodeContact, depth_in_ball, depth_in_land, node_contact, surface_velocity,
@@ -12,6 +11,7 @@ use crate::ch5_cage::node_contact::{
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::members::floating_solid::{into_frame, out_of_frame};
 use crate::members::rigid_body::{BodyKinematics, Wrench};
+use crate::members::state::BodyState;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 

@@ -3,8 +3,8 @@
 //! A section is a [`Mount`] and the axes of its body. Both ends get opposite forces at the same point, so that momentum
 //! is conserved; forces are the gradient of an energy for any rotation of the ends.
 
-use crate::assembly::mount::Mount;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, sub};
+use crate::members::mount::Mount;
 use crate::members::rigid_body::{BodyKinematics, Wrench};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 

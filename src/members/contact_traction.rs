@@ -1,7 +1,6 @@
 //! Traction of the loaded ball–race contacts of one evaluation, contact by contact or over blocks. Loads and positions
 //! are those of [`detection`](crate::members::contacts).
 
-use crate::assembly::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::RaceContact;
 use crate::ch2_housing::bearing::slices::{
     Motion, Patch, SliceSum, Sliding, TractionSlope, add_slice, add_slope, integrate,
@@ -14,6 +13,7 @@ use crate::ch2_housing::bearing::traction::{
 use crate::kinematics::vec3::Vec3;
 use crate::members::contacts::{ContactLaws, ContactTable, Want};
 use crate::members::rigid_body::BodyKinematics;
+use crate::members::state::{LANES, Layout, POSITION, SPIN, VELOCITY};
 
 /// Velocities of ball and race at a pair.
 #[inline(always)]

@@ -3,11 +3,6 @@
 //! Two kernels call the same scalar laws: [`Kernel::Scalar`] contact by contact, [`Kernel::Simd`] over blocks of
 //! [`LANES`] contacts. The order of operations within a contact is the same, so the bits are too.
 
-use crate::assembly::lists::Bearing;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::plan::steps::BearingSteps;
-use crate::assembly::state::{LANES, Layout, POSITION, VELOCITY};
 use crate::ch2_housing::bearing::contact::{
     RaceContact, RaceLaw, damped_load, normal_load, race_contact,
 };
@@ -16,10 +11,15 @@ use crate::ch2_housing::bearing::hertz::{HertzContact, contact_ellipse};
 use crate::ch2_housing::bearing::slices::{Slices, Sliding, TractionForce, TractionSlope};
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::sub;
+use crate::members::bearing::Bearing;
 use crate::members::contact_traction::{traction_lanes, traction_plain};
 use crate::members::raceway_profile;
 use crate::members::raceway_profile::{ProfiledPair, RacewayProfiles};
 use crate::members::rigid_body::BodyKinematics;
+use crate::members::state::{LANES, Layout, POSITION, VELOCITY};
+use crate::members::steps::BearingSteps;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 
 /// Laws that all contacts share.
 #[derive(Clone, Debug)]

@@ -22,15 +22,15 @@
 //! Loads on a section, about its displaced centre, act on body and modes by the transpose of its motion: the sum of
 //! forces on the body and the power are the same.
 
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use crate::members::mount::Mount;
 use crate::members::reduced_solid::ModalEnergy;
 use crate::members::rigid_body::{BodyKinematics, Wrench};
 use crate::members::shaft_modes::ShaftShapes;
 use crate::members::unbalance::{directions, turning_momentum};
 use crate::numeric::profile::Profile;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Bending of one body of an assembly.

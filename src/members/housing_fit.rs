@@ -4,12 +4,12 @@
 //! by its square over the diameter. Forces are the gradient of the energy in these coordinates: race and modes get
 //! opposite forces.
 
-use crate::assembly::mount::Mount;
 use crate::ch2_housing::bore_contact::{
     ContactNode, ContactSum, Cylinder, Frame, Penalty, contact,
 };
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, dot, scale};
+use crate::members::mount::Mount;
 use crate::members::reduced_solid::ReducedSolid;
 use crate::members::rigid_body::{BodyKinematics, Wrench};
 use crate::numeric::profile::Profile;

@@ -1,29 +1,34 @@
-//! One file for each kind of member of an assembly: position, forces, Jacobian rows, energy, static answer.
+//! One file for each kind of member of an assembly: data, position, forces, Jacobian rows, energy, its part of the state.
 
 pub mod ball_set;
 pub mod beam;
-pub mod body_rates;
+pub mod bearing;
+pub mod body;
 pub mod cage_nodes;
+pub mod condensed_shaft;
 pub mod connection;
 pub mod contact_traction;
 pub mod contacts;
 pub mod dent_table;
 pub mod flexible_shaft;
 pub mod floating_solid;
+pub mod free_modes;
 pub mod half_space;
 pub mod housing_fit;
+pub mod meshed_shaft;
+pub mod mount;
+pub mod prony;
 pub mod race_position;
 pub mod raceway_profile;
 pub mod reduced_solid;
+pub mod revolution;
 pub mod rigid_body;
-pub mod section_attachments;
+pub mod section_attachment;
 pub mod sensor;
 pub mod shaft_modes;
+pub mod state;
 pub mod static_ball;
 pub mod static_ball_on_race;
 pub mod static_ball_start;
-pub mod static_bearing;
-pub mod static_connection;
-pub mod static_housing_fit;
-pub mod static_shaft;
+pub mod steps;
 pub mod unbalance;

@@ -1,7 +1,7 @@
 //! Position of a race in an equilibrium, and its derivatives by the coordinates.
 
-use crate::assembly::mount::Mount;
 use crate::kinematics::Pose;
+use crate::members::mount::Mount;
 use nalgebra::{SVector, Vector3};
 
 /// Position of the inner race and its derivatives with respect to the two tilts.

@@ -9,10 +9,6 @@
 //!
 //! Contact damping takes the rate of δ, not of w: it does not brake a ball that rolls up the wall of a spall.
 
-use crate::assembly::lists::Bearing;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::state::{Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::contact::{RaceContact, RaceLaw, normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::geometry::Raceway;
 use crate::ch3_bushing::dent::{DentTable, Lost};
@@ -20,9 +16,13 @@ use crate::ch5_cage::raceway_profile::{RacewayProfile, Surface, Waviness};
 use crate::ch5_cage::spall::SpallLaw;
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, scale, sub};
 use crate::members::ball_set::BallSet;
+use crate::members::bearing::Bearing;
 use crate::members::contacts::{ContactTable, Set, Want};
 use crate::members::dent_table::{DentError, DentedContact, usual_table};
 use crate::members::rigid_body::BodyKinematics;
+use crate::members::state::{Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;

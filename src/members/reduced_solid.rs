@@ -7,11 +7,11 @@
 //!
 //! α the coefficient of (2.7) over the mass. `solids::reduction` computes the modes.
 
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::plan::solid::SolidSteps;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::profile::Profile;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
+use crate::solids::plan::SolidSteps;
 
 /// Modes in the equations of motion; displacements of all nodes are kept elsewhere.
 #[derive(Clone, Debug, Default, PartialEq)]

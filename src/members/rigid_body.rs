@@ -1,16 +1,15 @@
 //! Motion of a race: prescribed coordinates are imposed, the others follow from loads.
 
-use crate::assembly::lists::{Body, Mobility};
-use crate::assembly::loads::{Drive, DrivenBody, Rotation};
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::state::BodyState;
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::Pose;
 use crate::kinematics::euler::about;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use crate::members::body::{Body, Drive, DrivenBody, Mobility, Rotation};
+use crate::members::mount::Mount;
+use crate::members::state::BodyState;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// A race at one instant.

@@ -1,10 +1,10 @@
 //! Bending and stretching modes of a free shaft: natural modes up to a frequency, and static correction modes for its
-//! attachments ([`crate::solids::free_modes`]).
+//! attachments ([`crate::members::free_modes`]).
 
 use crate::ch4_rotor::beam::{NODES, PlaneMatrix};
 use crate::members::beam::{Beam, BeamError, BeamMatrices, STATION};
 use crate::members::flexible_shaft::Section;
-use crate::solids::free_modes::{Cut, FreeBody, FreeShapes};
+use crate::members::free_modes::{Cut, FreeBody, FreeShapes};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 

@@ -12,11 +12,10 @@
 //! energy from its spin, and holds a run-up by a weak torque back at the critical speed. Weight acts at the unbalance
 //! too, which makes the body a pendulum. The inertia of the mass in tilting is omitted.
 
-use crate::assembly::lists::{Assembly, Body};
-use crate::assembly::loads::{Drive, DrivenBody, Rotation};
-use crate::assembly::mount::Mount;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use crate::members::body::{Body, Drive, DrivenBody, Rotation};
 use crate::members::flexible_shaft::{Bend, ElasticShaft, Section, SectionNow};
+use crate::members::mount::Mount;
 use crate::members::rigid_body::{BodyKinematics, BodyRates, Wrench};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -33,11 +32,10 @@ pub(crate) fn turning_momentum(size: f64, spin: f64, angular: Vec3, forward: Vec
 }
 
 /// Returns whether a body with an unbalance is driven by a torque.
-pub fn is_coupled(assembly: &Assembly, body: usize) -> bool {
-    let of = &assembly.bodies[body];
+pub fn is_coupled(of: &Body, index: usize, shafts: &[ElasticShaft]) -> bool {
     let by_torque = of.driven().is_some_and(|of| matches!(of.rotation, Rotation::Torque(_)));
-    let on_shaft = |shaft: &ElasticShaft| shaft.body == body && !shaft.unbalances.is_empty();
-    by_torque && (of.unbalance != 0.0 || assembly.shafts.iter().any(on_shaft))
+    let on_shaft = |shaft: &ElasticShaft| shaft.body == index && !shaft.unbalances.is_empty();
+    by_torque && (of.unbalance != 0.0 || shafts.iter().any(on_shaft))
 }
 
 /// b·M⁻¹b of the unbalances of a straight shaft, kg·m²: the smallest axial inertia of such masses, on a shaft of this
@@ -63,13 +61,13 @@ pub(crate) type Bent<'s> = (&'s ElasticShaft, &'s [f64]);
 
 /// The flexible shaft of a body and its entries; `firsts` are those of all shafts.
 pub(crate) fn bent_of<'s>(
-    assembly: &'s Assembly,
+    shafts: &'s [ElasticShaft],
     firsts: &[usize],
     body: usize,
     state: &'s [f64],
 ) -> Option<(usize, Bent<'s>)> {
-    let index = assembly.shafts.iter().position(|shaft| shaft.body == body)?;
-    let (shaft, at) = (&assembly.shafts[index], firsts[index]);
+    let index = shafts.iter().position(|shaft| shaft.body == body)?;
+    let (shaft, at) = (&shafts[index], firsts[index]);
     Some((at, (shaft, &state[at..at + shaft.entries()])))
 }
 
@@ -119,9 +117,9 @@ pub(crate) struct UnbalanceCoupling {
 }
 
 impl UnbalanceCoupling {
-    /// With memory for the shafts of an assembly.
-    pub(crate) fn new(assembly: &Assembly) -> UnbalanceCoupling {
-        let most = assembly.shafts.iter().map(ElasticShaft::amplitudes).max();
+    /// With memory for these shafts.
+    pub(crate) fn new(shafts: &[ElasticShaft]) -> UnbalanceCoupling {
+        let most = shafts.iter().map(ElasticShaft::amplitudes).max();
         UnbalanceCoupling { on_body: Wrench::default(), on_shapes: vec![0.0; most.unwrap_or(0)] }
     }
 

@@ -4,11 +4,11 @@
 //!
 //! Balls are eliminated in blocks of [`LANES`], with every kernel.
 
-use crate::assembly::state::{
-    LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
-};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::members::ball_set::BallSet;
+use crate::members::state::{
+    LANES, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
+};
 use crate::motion::block_arrow_solids::SolidBlock;
 use crate::motion::block_arrow_terms::{
     add_joints, drive_power, elongate, joint_forces, relaxing_forces, spring_back, weigh,

@@ -1,7 +1,7 @@
 //! Terms of contacts, joints and drives in the matrix of a linearly implicit step and in its right-hand sides.
 
-use crate::assembly::state::LANES;
 use crate::members::connection::MaxwellElement;
+use crate::members::state::LANES;
 use crate::motion::elimination::{LdltMatrix, ZERO, add_product, subtract_product, total};
 use crate::motion::linearised::{JointRow, Lane, LaneContact, Linearised};
 

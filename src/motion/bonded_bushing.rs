@@ -4,14 +4,14 @@
 //! nodes are summed over a coupling step and applied to the bodies, as those of a housing fit.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::state::BodyState;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, scale, sub};
 use crate::members::connection::{Connection, Law};
 use crate::members::rigid_body::Wrench;
+use crate::members::state::BodyState;
 use crate::motion::race_in_bore::{in_free_motion, mean_over, work_on_way};
 use crate::motion::simulation::Simulation;
 use crate::numeric::profile::Profile;
+use crate::plan::counts::Counts;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::Prescribed;
 use crate::solids::rubber::error::RubberError;

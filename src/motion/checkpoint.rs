@@ -1,8 +1,9 @@
 //! Checkpoint of a simulation, from which it continues with the same bits.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::state::{Layout, Places};
+use crate::assembly::places::Places;
 use crate::members::contacts::Work;
+use crate::members::state::Layout;
 use crate::motion::energy_ledger::Balance;
 use crate::motion::error_control::Memory;
 use crate::motion::extremes::Extremes;
@@ -22,7 +23,7 @@ pub struct Checkpoint {
     pub step_watch: StepWatch,
     /// Of each bearing.
     pub extremes: Vec<Extremes>,
-    /// The whole state vector; see [`crate::assembly::state`].
+    /// The whole state vector; see [`crate::members::state`].
     pub state: Vec<f64>,
     /// The ledger counts from its start.
     pub balance: Balance,

@@ -1,10 +1,10 @@
 //! Steps of a bearing by the clock of its run.
 
-use crate::assembly::channels::ChannelGroup;
 use crate::assembly::lists::Assembly;
 use crate::motion::simulation::{RunOptions, Simulation, SimulationError, Stepping};
 use crate::motion::step_watch::CHECK_EVERY;
 use crate::numeric::clock::{Clock, whole_steps};
+use crate::plan::channels::ChannelGroup;
 
 /// Settings of a run.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,13 +7,11 @@
 //! impulses. Body and solid get the same impulse with opposite signs. This is drift, kick, drift: second order, and
 //! elastic contact conserves energy in the long run. Solids do not see each other within a coupling step.
 
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::{Counts, StageCounts};
-use crate::assembly::state::Ledger;
 use crate::ch2_housing::bore_contact::{ContactNode, Penalty};
 use crate::equilibrium::statics::StaticsError;
 use crate::kinematics::vec3::Vec3;
 use crate::members::rigid_body::Wrench;
+use crate::members::state::Ledger;
 use crate::motion::bonded_bushing::{BondedBushing, BondedSnapshot};
 use crate::motion::coupling_start::is_alone;
 use crate::motion::explicit_cage::CagePart;
@@ -21,6 +19,8 @@ use crate::motion::explicit_shaft::{JointSnapshot, ShaftPart};
 use crate::motion::explicit_solid::{SolidSnapshot, SteppedSolid};
 use crate::motion::race_in_bore::{Lost, SeatSnapshot, SeatState};
 use crate::motion::simulation::{RunOptions, Simulation, SimulationError, Snapshot};
+use crate::plan::Stage;
+use crate::plan::counts::{Counts, StageCounts};
 use crate::solids::energy::SolidLedger;
 use crate::solids::model::{SolidError, SolidModel};
 use crate::solids::rubber::error::RubberError;

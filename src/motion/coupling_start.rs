@@ -1,11 +1,12 @@
 //! Start of a coupled motion: equilibrium of bodies, solids and bushings, and the length of the coupling step.
 
-use crate::assembly::lists::{Assembly, Body};
-use crate::assembly::plan::Stage;
-use crate::assembly::state::{BODY, BodyState, Places};
+use crate::assembly::lists::Assembly;
+use crate::assembly::places::Places;
 use crate::equilibrium::statics::StaticsError;
+use crate::members::body::Body;
 use crate::members::flexible_shaft::ElasticShaft;
 use crate::members::rigid_body;
+use crate::members::state::{BODY, BodyState};
 use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
 use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, SolidPart};
 use crate::motion::coupling_step::{check, divided, longest_coupling_step};
@@ -15,6 +16,7 @@ use crate::motion::explicit_solid::{SteppedSolid, seated};
 use crate::motion::race_in_bore::Seat;
 use crate::motion::simulation::Simulation;
 use crate::motion::start;
+use crate::plan::Stage;
 use crate::solids::contact::closed_limit;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, padded};
 use crate::solids::step_limit::step_limit;

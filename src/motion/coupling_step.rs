@@ -1,7 +1,7 @@
 //! Length of the coupling step, and what cannot be coupled.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::loads::Rotation;
+use crate::members::body::Rotation;
 use crate::motion::bonded_bushing::BondedBushing;
 use crate::motion::coupling::{CouplingError, CouplingOptions};
 use crate::motion::explicit_cage::stiffest;

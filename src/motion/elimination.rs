@@ -3,7 +3,7 @@
 //!
 //! The upper triangle goes in; factors are stored unscaled, with reciprocal pivots on the diagonal.
 
-use crate::assembly::state::LANES;
+use crate::members::state::LANES;
 use crate::motion::linearised::Lane;
 
 pub const ZERO: Lane = [0.0; LANES];

@@ -1,10 +1,10 @@
 //! Energies of a state: kinetic, contacts, gravity, springs, reduced solids and their housing fits.
 
-use crate::assembly::state::{POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::cage::cage_energy;
 use crate::ch2_housing::bearing::contact::strain_energy;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::{Vec3, dot};
+use crate::members::state::{POSITION, SPIN, VELOCITY};
 use crate::members::unbalance::{bent_of, energies};
 use crate::motion::system::System;
 
@@ -125,7 +125,7 @@ impl System {
         for index in
             self.steps.moving.iter().copied().filter(|&of| self.steps.bodies[of].unbalance_coupled)
         {
-            let bent = bent_of(assembly, &self.shafts, index, state).map(|(_, bent)| bent);
+            let bent = bent_of(&assembly.shafts, &self.shafts, index, state).map(|(_, bent)| bent);
             let of = (&assembly.bodies[index], &self.bodies[index]);
             let [kinetic, weight] = energies(of, bent, assembly.gravity);
             energy.kinetic += kinetic;

@@ -1,7 +1,7 @@
 //! Energy ledger of bearings in motion: initial energy, work, losses, and the residual.
 
 use crate::assembly::ledger_watch::{LedgerWatch, MOST_OPEN};
-use crate::assembly::state::LEDGER;
+use crate::members::state::LEDGER;
 use crate::motion::energy::Energy;
 use crate::motion::simulation::{Integrator, RunOptions, SimulationError, Stepping};
 use crate::motion::system::System;
@@ -35,7 +35,7 @@ pub struct ContactTurnover {
 pub struct Snapshot {
     pub time: f64,
     pub energy: Energy,
-    /// Work and losses since the start, J, in the order of [`crate::assembly::state::Ledger`].
+    /// Work and losses since the start, J, in the order of [`crate::members::state::Ledger`].
     pub ledger: [f64; LEDGER],
     /// Energy residual, J.
     pub residual: f64,

@@ -4,10 +4,12 @@
 //! displacement times the frequency of the body on its contacts. The largest of these quotients over `accuracy` times
 //! [`SHARE`] is the error norm, below one for an accepted step.
 
-use crate::assembly::lists::{Assembly, Bearing};
-use crate::assembly::state::{BODY, LANES, Layout, ORIENTATION, POSITION, Places, SPIN, VELOCITY};
+use crate::assembly::lists::Assembly;
+use crate::assembly::places::Places;
 use crate::ch2_housing::bearing::contact::normal_stiffness;
+use crate::members::bearing::Bearing;
 use crate::members::flexible_shaft::{ElasticShaft, Section};
+use crate::members::state::{BODY, LANES, Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
 use crate::motion::system::System;
 
 /// An attempted step: the new state and its estimated error.

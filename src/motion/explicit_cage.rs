@@ -5,12 +5,12 @@
 //! mass: it follows the mean motion of the elements.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::state::{BODY, BodyState, POSITION, SPIN, VELOCITY};
 use crate::ch2_housing::bearing::cage::{AxisMotion, CageContact};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::members::ball_set::guiding_side;
 use crate::members::cage_nodes::{CageNodes, CageNow, Deformation, ElementsNow, Touched};
 use crate::members::rigid_body::{BodyKinematics, Wrench};
+use crate::members::state::{BODY, BodyState, POSITION, SPIN, VELOCITY};
 use crate::motion::explicit_shaft::JointSnapshot;
 use crate::motion::race_in_bore::{in_free_motion, mean_over};
 use crate::motion::simulation::Simulation;

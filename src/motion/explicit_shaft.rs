@@ -5,12 +5,12 @@
 //! force acts on the nodes, its impulse with the opposite sign on the body.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::state::BodyState;
 use crate::ch4_rotor::section::{RotorSection, SectionPlace};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale};
 use crate::members::connection::{SpringDashpot, SpringForces, spring_dashpot};
 use crate::members::rigid_body;
 use crate::members::rigid_body::{BodyKinematics, Wrench};
+use crate::members::state::BodyState;
 use crate::motion::race_in_bore::{in_free_motion, mean_over, work_on_way};
 use crate::motion::simulation::Simulation;
 use crate::numeric::profile::Profile;

@@ -2,12 +2,12 @@
 //! with the bodies.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
 use crate::motion::explicit_cage::SteppedCage;
 use crate::motion::explicit_shaft::{JointSnapshot, SteppedShaft};
 use crate::motion::race_in_bore::{Seat, SeatSnapshot, SeatState};
 use crate::motion::simulation::Simulation;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::solids::energy::SolidLedger;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::SolidError;

@@ -12,17 +12,17 @@
 //! speed, gyroscopic moments, also those of flexible shafts, and the coupling of a flexible cage's modes with its contacts and
 //! its frame. A W-method keeps its order without them.
 
-use crate::assembly::lists::{Bearing, Mobility};
-use crate::assembly::loads::{Drive, DrivenBody, Rotation};
-use crate::assembly::state::LANES;
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::{Vec3, add, cross, dot, scale, sub};
 use crate::members::ball_set::{BallSet, guiding_side};
+use crate::members::bearing::Bearing;
+use crate::members::body::{Drive, DrivenBody, Mobility, Rotation};
 use crate::members::connection;
 use crate::members::connection::{Connection, MaxwellElement};
 use crate::members::housing_fit::SeatNow;
 use crate::members::rigid_body::{BodyKinematics, directions};
-use crate::members::section_attachments::{SectionAttachment, kinematics_at_attachment};
+use crate::members::section_attachment::{SectionAttachment, kinematics_at_attachment};
+use crate::members::state::LANES;
 use crate::motion::linearised_contacts::{friction, pockets, race_contacts};
 use crate::motion::linearised_shafts;
 use crate::motion::linearised_shafts::SectionHub;

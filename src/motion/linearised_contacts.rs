@@ -1,12 +1,12 @@
 //! Contacts of a block of balls with races and pockets as springs, dashpots and slopes of friction.
 
-use crate::assembly::lists::Caged;
-use crate::assembly::state::{LANES, POSITION};
 use crate::ch2_housing::bearing::cage::{CageContact, CageContacts};
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
 use crate::members::ball_set::BallSet;
+use crate::members::bearing::Caged;
+use crate::members::state::{LANES, POSITION};
 use crate::motion::linearised::{Hub, LaneContact, ROWS, driven, joined, on_hub, put};
 
 pub(crate) fn race_contacts(

@@ -5,9 +5,9 @@
 //! then projected onto bodies and bending modes. The shortening of second order in bending is omitted: the method is of
 //! third order with any matrix.
 
-use crate::assembly::mount::Mount;
 use crate::kinematics::vec3::{Vec3, cross, scale, sub};
-use crate::members::section_attachments::SectionAttachment;
+use crate::members::mount::Mount;
+use crate::members::section_attachment::SectionAttachment;
 use crate::motion::elimination::LdltMatrix;
 use crate::motion::linearised::{Hub, Linearised, Shapes, to_basis};
 use crate::motion::system::System;
@@ -35,7 +35,7 @@ pub struct SectionHub {
     rows: [Vec<f64>; 6],
 }
 
-/// One for each attachment of [`crate::members::section_attachments::SectionAttachments::all`], numbered after the
+/// One for each attachment of [`crate::assembly::section_attachments::SectionAttachments::all`], numbered after the
 /// bodies.
 pub(crate) fn sections(
     system: &System,

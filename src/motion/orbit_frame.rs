@@ -5,7 +5,7 @@
 //! ball moves little: z' = Rᵀv − Ω × z, likewise for velocity and spin. Ω is constant within a step, so that any method
 //! keeps its order.
 
-use crate::assembly::state::{Layout, POSITION, SPIN, VELOCITY};
+use crate::members::state::{Layout, POSITION, SPIN, VELOCITY};
 
 /// Rotated vectors of a ball; its orientation stays inertial.
 const VECTORS: [usize; 3] = [POSITION, VELOCITY, SPIN];

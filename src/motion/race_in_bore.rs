@@ -1,9 +1,6 @@
 //! Housing fit of a race in the bore of a solid in explicit steps: tested nodes, contact forces on race and solid,
 //! impulse and work since the start.
 
-use crate::assembly::lists::Body;
-use crate::assembly::mount::Mount;
-use crate::assembly::state::BodyState;
 use crate::ch2_housing::bore_contact::{
     ContactNode, ContactSum, Cylinder, Frame, Penalty, contact, split_by_distance,
 };
@@ -11,8 +8,11 @@ use crate::ch4_rotor::bore_friction::BoreFriction;
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, norm, scale, sub};
 use crate::members::ball_set::onto_body;
+use crate::members::body::Body;
+use crate::members::mount::Mount;
 use crate::members::rigid_body;
 use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
+use crate::members::state::BodyState;
 use crate::motion::bore_friction::{FrictionSum, Pressed, SeatFriction};
 use crate::numeric::profile::Profile;
 use crate::solids::condensation::{is_under, rim};

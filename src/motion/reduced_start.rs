@@ -1,18 +1,19 @@
 //! Reduced housings of an assembly, and the equilibrium from which a motion starts.
 
-use crate::assembly::lists::{Assembly, Bearing};
-use crate::assembly::mount::Mount;
-use crate::assembly::static_lists::StaticSeat;
+use crate::assembly::lists::Assembly;
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::equilibrium::exact_gap_iteration::solve_with_true_distances;
 use crate::equilibrium::initial::static_assembly;
+use crate::equilibrium::lists::StaticSeat;
 use crate::equilibrium::statics::{AssemblySolution, StaticsError};
+use crate::members::bearing::Bearing;
 use crate::members::housing_fit::Seat;
+use crate::members::mount::Mount;
 use crate::numeric::profile::Profile;
+use crate::reduction::component_modes::Reduction;
 use crate::solids::bore_equilibrium::Fit;
 use crate::solids::condensation::CondensedBore;
-use crate::solids::reduction::Reduction;
 use std::f64::consts::TAU;
 
 /// Adds a reduced housing and the fit of a body in it. The housing starts at rest and undeformed, the body at its

@@ -6,12 +6,15 @@
 //! Three equilibria give the velocity as long as they are on one branch. If loads do not determine the position, or the
 //! race jumps to another branch, all velocities are zero.
 
-use crate::assembly::lists::{Assembly, Bearing};
-use crate::assembly::loads::next_corner;
-use crate::equilibrium::initial::{Equilibrium, at, is_fixed, orbital_speed};
+use crate::assembly::lists::Assembly;
+use crate::assembly::prescribed::orbital_speed;
+use crate::equilibrium::initial::{Equilibrium, at};
 use crate::equilibrium::statics::Determinacy;
+use crate::members::bearing::Bearing;
+use crate::members::body::is_fixed;
 use crate::members::rigid_body;
 use crate::members::rigid_body::kinematics_at_mount;
+use crate::numeric::profile::next_corner;
 use std::f64::consts::TAU;
 
 /// Largest part of a ball pitch between two equilibria. The formula's error for the first harmonic

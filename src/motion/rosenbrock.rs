@@ -5,8 +5,8 @@
 //! steps. Here contacts and traction are implicit through [`Linearised`], one matrix a step; balls are described in
 //! [`OrbitFrames`], rotations of bodies in [`TurningFrames`].
 
-use crate::assembly::state::Ledger;
 use crate::members::contacts::Want;
+use crate::members::state::Ledger;
 use crate::motion::block_arrow::BlockArrowMatrix;
 use crate::motion::error_control::Attempt;
 use crate::motion::linearised::Linearised;

@@ -1,22 +1,20 @@
 //! A simulation: the state, its integration in time, and the checks of each step.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::{Stage, motion};
-use crate::assembly::state::{BodyState, Ledger};
 use crate::members::contacts::Kernel;
 use crate::members::rigid_body::Wrench;
-use crate::motion::dormand_prince;
+use crate::members::state::{BodyState, Ledger};
 use crate::motion::dormand_prince::DormandPrince;
 use crate::motion::energy_ledger::Balance;
 use crate::motion::error_control::{Attempt, Controller};
 use crate::motion::extremes::Extremes;
 use crate::motion::rk4::RungeKutta;
-use crate::motion::rosenbrock;
 use crate::motion::rosenbrock::Rosenbrock;
 use crate::motion::stability::{StepLimit, step_limit};
-use crate::motion::start;
 use crate::motion::step_watch::{StepWatch, Stiffness, stiffness};
 use crate::motion::system::System;
+use crate::motion::{dormand_prince, plan as motion, rosenbrock, start};
+use crate::plan::Stage;
 
 pub use crate::motion::energy_ledger::Snapshot;
 pub use crate::motion::error::SimulationError;

@@ -1,10 +1,9 @@
 //! Largest stable step of Runge–Kutta, from the eigenvalues of the Jacobian at a state.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::state::{
-    Layout, ORIENTATION, POSITION, Places, SPIN, VELOCITY, quaternion_rate,
-};
+use crate::assembly::places::Places;
 use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::members::state::{Layout, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use crate::motion::system::System;
 use nalgebra::{Complex, DMatrix, DVector, Quaternion, Schur};
 

@@ -1,15 +1,19 @@
 //! Start of a simulation: rolling in equilibrium, or in nominal positions.
 
-use crate::assembly::lists::{Assembly, Bearing};
-use crate::assembly::loads::Drive;
-use crate::assembly::state::{BODY, BodyState, Layout, Places};
+use crate::assembly::lists::Assembly;
+use crate::assembly::places::Places;
+use crate::assembly::prescribed::{orbital_speed, race_speeds};
+use crate::assembly::section_attachments::SectionAttachments;
 use crate::ch2_housing::bearing::cage::Guidance;
-use crate::equilibrium::initial::{at_start, orbital_speed, prescribed_speed, race_speeds};
+use crate::equilibrium::initial::at_start;
 use crate::equilibrium::statics::StaticsError;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
+use crate::members::bearing::Bearing;
+use crate::members::body::{Drive, prescribed_speed};
 use crate::members::rigid_body;
 use crate::members::rigid_body::BodyKinematics;
-use crate::members::section_attachments::{SectionAttachments, kinematics_at_attachment};
+use crate::members::section_attachment::kinematics_at_attachment;
+use crate::members::state::{BODY, BodyState, Layout};
 use crate::motion::rolling_velocity;
 use crate::motion::rolling_velocity::Rates;
 use nalgebra::Vector3;
@@ -44,7 +48,7 @@ pub fn at_equilibrium(assembly: &Assembly) -> Result<Vec<f64>, StaticsError> {
 
 /// State vector with all bodies in nominal positions, balls and cages rolling at the given speeds; loads act suddenly.
 pub fn nominal(assembly: &Assembly) -> Vec<f64> {
-    let place = |body: &crate::assembly::lists::Body| {
+    let place = |body: &crate::members::body::Body| {
         let mut at = body.rest;
         if let Some(race) = body.driven() {
             for (coordinate, drive) in at.iter_mut().zip(&race.drives) {

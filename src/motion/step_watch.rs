@@ -5,15 +5,15 @@
 //! contact stiffness is compared every few steps, at little cost, and the Jacobian is evaluated when the limit may have
 //! come down to the step. A prescribed step is refused then; one that follows from the limit is shortened.
 
-use crate::assembly::lists::Bearing;
-use crate::assembly::plan::Stage;
 use crate::ch2_housing::bearing::cage::CageContact;
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
 use crate::members::ball_set::BallSet;
+use crate::members::bearing::Bearing;
 use crate::motion::simulation::{Integrator, Simulation, SimulationError, Stepping};
 use crate::motion::stability::step_limit;
 use crate::motion::system::System;
+use crate::plan::Stage;
 
 /// Steps between two checks of the contacts.
 pub const CHECK_EVERY: u64 = 16;

@@ -1,30 +1,30 @@
 //! The equations of motion: state in, rates out.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::loads::Rotation;
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::counts::StageCounts;
-use crate::assembly::plan::steps::Steps;
-use crate::assembly::plan::{Item, Stage, motion};
-use crate::assembly::state::{
-    BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, Places, SPIN, VELOCITY,
-};
+use crate::assembly::places::Places;
+use crate::assembly::section_attachments::SectionAttachments;
 use crate::ch2_housing::bearing::cage::AxisMotion;
 use crate::kinematics::vec3::Vec3;
 use crate::members::ball_set::{BallSet, ContactForces};
+use crate::members::body::Rotation;
 use crate::members::connection::{Connection, SpringForces};
 use crate::members::contacts::{Kernel, Want, Work};
 use crate::members::flexible_shaft::Section;
 use crate::members::floating_solid::FloatingNow;
 use crate::members::housing_fit::SeatNow;
-use crate::members::raceway_profile;
+use crate::members::mount::Mount;
 use crate::members::reduced_solid::ModalEnergy;
-use crate::members::rigid_body;
 use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
-use crate::members::section_attachments::{
-    SectionAttachment, SectionAttachments, kinematics_at_attachment, wrench_on_body,
+use crate::members::section_attachment::{
+    SectionAttachment, kinematics_at_attachment, wrench_on_body,
 };
+use crate::members::state::{BODY, BodyState, LEDGER, Layout, Ledger, ORIENTATION, SPIN, VELOCITY};
 use crate::members::unbalance::UnbalanceCoupling;
+use crate::members::{raceway_profile, rigid_body};
+use crate::motion::plan as motion;
+use crate::motion::steps::Steps;
+use crate::plan::counts::StageCounts;
+use crate::plan::{Item, Stage};
 
 /// An assembly with its constants and working memory.
 pub struct System {
@@ -90,7 +90,7 @@ impl System {
             sets,
             outside: vec![None; bodies.len()],
             loads: vec![Wrench::default(); bodies.len()],
-            unbalance_coupling: UnbalanceCoupling::new(&assembly),
+            unbalance_coupling: UnbalanceCoupling::new(&assembly.shafts),
             bodies,
             work: Work::default(),
             ran: StageCounts::new(

@@ -5,8 +5,9 @@
 //! beginning of the step: ṗ = r*(q̇ − ½ Ω q), zero for a steady rotation. Ω is constant within a step, so that any
 //! method keeps its order.
 
-use crate::assembly::state::{ORIENTATION, Places, SPIN, quaternion_rate};
+use crate::assembly::places::Places;
 use crate::kinematics::vec3::{Vec3, dot, scale};
+use crate::members::state::{ORIENTATION, SPIN, quaternion_rate};
 use nalgebra::Quaternion;
 
 /// Angular velocities of the bodies' frames, rad/s, inertial axes.

@@ -1,27 +1,21 @@
 //! Validity of a state: finite values, balls between their races, races and cages in their bearings, springs within
 //! their range, parts that do not interpenetrate. Checked at the start and after each step.
 
-use crate::assembly::lists::{Bearing, Caged};
-use crate::assembly::loads::Drive;
-use crate::assembly::state::{BODY, POSITION};
 use crate::ch2_housing::bearing::ball_contact::are_apart;
-use crate::ch2_housing::bearing::cage::{AxisMotion, CageContact, CageContacts, Guidance};
+use crate::ch2_housing::bearing::cage::{AxisMotion, CageContact};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::equilibrium::statics::COORDINATE_NAMES;
 use crate::kinematics::vec3::{Vec3, add_scaled, cross, dot, norm, sub};
 use crate::members::ball_set::{BallSet, neighbours};
+use crate::members::bearing::{Bearing, Caged, HERTZ_SCALE, cage_room};
+use crate::members::body::{Drive, FARTHEST};
 use crate::members::housing_fit::Seat;
 use crate::members::rigid_body::BodyKinematics;
+use crate::members::state::{BODY, POSITION};
 use crate::motion::error::SimulationError;
 use crate::motion::simulation::Simulation;
 use crate::numeric::clock::to_digits;
 use std::f64::consts::PI;
-
-/// Largest interpenetration, in ball radii. The pressure of a Hertz contact of balls depends on δ/r alone. At this
-/// depth steel on steel would carry 20 GPa, five times the limit of permanent deformation (ISO 76), on a contact a
-/// fifth of the ball wide: neither elasticity nor the half-space holds. Cage contacts, whose stiffness is a choice,
-/// have the same limit.
-pub const HERTZ_SCALE: f64 = 0.1;
 
 /// Largest displacement of a race from its nominal position (m), along and across its axis: the free play in the
 /// grooves plus a ball radius. Beyond it the rings of a real bearing have met (usual shoulders leave 1.2 ball radii
@@ -31,24 +25,6 @@ pub fn race_limit(geometry: &BearingGeometry) -> f64 {
     let play = grooves - 2.0 * geometry.ball_radius + geometry.radial_clearance.max(0.0);
     geometry.ball_radius + play
 }
-
-/// Largest displacement of a cage's centre from the axis of its outer race (m): its ring meets the bottom of the
-/// groove, or its guiding surface the guiding race, at the largest contact depth. Pockets limit it in the other
-/// directions.
-pub fn cage_room(geometry: &BearingGeometry, cage: &CageContacts) -> f64 {
-    let bottom = geometry.outer.centre_radius + geometry.outer.groove_radius;
-    let ring = (bottom - cage.ring[1]).max(0.0);
-    let room = match cage.guidance {
-        Guidance::OuterRace => cage.race_clearance.min(ring),
-        // The inner race may be displaced too.
-        Guidance::InnerRace | Guidance::Balls => ring,
-    };
-    room + HERTZ_SCALE * geometry.ball_radius
-}
-
-/// Largest displacement of a bearing from the rest position of its outer race, m. Soft springs deflect by millimetres,
-/// nothing sound by a metre.
-pub const FARTHEST: f64 = 1.0;
 
 /// Largest displacement of a race across its bore, in radii of the race.
 const FARTHEST_IN_BORE: f64 = 0.1;

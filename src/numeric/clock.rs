@@ -11,7 +11,7 @@
 //!
 //! In both cases the next step follows from stored values, so that a resumed or extended run gives the same bits.
 
-use crate::assembly::loads::next_corner;
+use crate::numeric::profile::next_corner;
 
 /// Rounds a number to `digits` significant digits.
 ///

@@ -253,3 +253,8 @@ fn table(points: &[[f64; 2]], t: f64) -> (f64, f64) {
         (None, None) => (0.0, 0.0),
     }
 }
+
+/// First of the sorted `corners` after `time`.
+pub fn next_corner(corners: &[f64], time: f64) -> Option<f64> {
+    corners.get(corners.partition_point(|corner| *corner <= time)).copied()
+}

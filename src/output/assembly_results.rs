@@ -2,8 +2,8 @@
 //! bearing, and `series.csv` with a row for each ball of each bearing.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::static_lists::{Place, StaticAssembly};
 use crate::equilibrium::bearing_tables::BearingState;
+use crate::equilibrium::lists::{Place, StaticAssembly};
 use crate::equilibrium::statics::{AssemblySolution, COORDINATE_NAMES};
 use crate::output::results::{
     ResultsError, RunRecord, ball, ball_columns, ball_rows, determinacy, insert_record, load_zone,

@@ -1,12 +1,12 @@
 //! Results folder of the natural modes of bodies: `summary.json`, and `series.csv` with one row per mode.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::static_lists::StaticAssembly;
+use crate::equilibrium::lists::StaticAssembly;
+use crate::equilibrium::quasi_static_limit::{Mode, MovingBody};
 use crate::equilibrium::statics::COORDINATE_NAMES;
 use crate::output::assembly_results::key;
 use crate::output::results::{ResultsError, RunRecord, insert_record, quantity, write_results};
 use crate::output::series::{Column, Series};
-use crate::vibrations::quasi_static_limit::{Mode, MovingBody};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;

@@ -9,13 +9,13 @@
 //! Lengths in m, loads in N and N m, angles in degrees. `summary.json` is written last: a folder
 //! with it is complete.
 
-use crate::assembly::plan::counts::StageCounts;
-use crate::assembly::plan::{Item, counted};
 use crate::equilibrium::statics::{
     BallState, COORDINATE_NAMES, ContactState, Determinacy, StaticSolution,
 };
 use crate::output::atomic::{WriteError, write_atomic};
 use crate::output::series::{Column, Series, SeriesError, columns_path};
+use crate::plan::counts::StageCounts;
+use crate::plan::{Item, counted};
 use nalgebra::SMatrix;
 use nalgebra::{SVector, Vector3};
 use ndarray::Array2;

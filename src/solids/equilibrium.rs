@@ -1,11 +1,11 @@
 //! Static equilibrium of a solid by Newton's method.
 
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
 use crate::ch2_housing::bore_contact::{ContactNode, ContactSum, contact};
 use crate::kinematics::strain::Mat3;
 use crate::kinematics::vec3::{Vec3, norm};
 use crate::numeric::sparse::{Factor, FactorError, SymmetricMatrix};
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::solids::contact::CylinderContact;
 pub use crate::solids::equilibrium_error::EquilibriumError;
 use crate::solids::equilibrium_error::Pivot;

@@ -1,8 +1,5 @@
 //! A flexible solid as plain data, and its model with all constants.
 
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::plan::solid::{Method, SolidSteps};
 use crate::ch2_housing::elastomer::ElastomerError;
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::ElementError;
@@ -12,7 +9,10 @@ use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
 use crate::numeric::clock::rounded;
 use crate::numeric::profile::Profile;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::solids::labels::{Labels, node_text};
+use crate::solids::plan::{Method, SolidSteps};
 use crate::solids::tet4_blocks::Node;
 use crate::solids::{tet4_blocks, tet10_blocks};
 use thiserror::Error;

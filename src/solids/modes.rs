@@ -1,9 +1,9 @@
 //! Lowest natural frequencies and modes of a solid: Lanczos' method on the shifted and inverted problem.
 
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::sparse::{Factor, FactorError, SymmetricMatrix};
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::solids::model::SolidModel;
 use crate::solids::tangent::{
     MassMatrix, PRESCRIBED, Unknowns, mass, mass_pattern, pattern, stiffness,

@@ -1,6 +1,6 @@
 //! Classical fourth-order Runge–Kutta steps of a solid, as in the source.
 
-use crate::assembly::plan::Stage;
+use crate::plan::Stage;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::{Prescribed, SolidModel};
 use crate::solids::rigid_motion::{RigidMotion, rigid_motion};

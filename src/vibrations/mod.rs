@@ -1,7 +1,6 @@
 //! Small vibrations of an assembly about its equilibrium: modes, whirl, critical speeds.
 
 pub mod critical_speeds;
-pub mod quasi_static_limit;
 pub mod relaxing;
 pub mod rotor;
 pub mod small_motions;

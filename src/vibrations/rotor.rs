@@ -5,7 +5,7 @@
 //! [`LinearSystem::circulating`].
 
 use crate::members::beam::{BeamError, station_at};
-use crate::solids::free_modes::lowest;
+use crate::members::free_modes::lowest;
 use crate::vibrations::critical_speeds::Critical;
 use crate::vibrations::relaxing::{Relaxing, settled};
 use nalgebra::{DMatrix, DVector};

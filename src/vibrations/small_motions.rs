@@ -2,27 +2,27 @@
 //! search, without finite differences.
 //!
 //! Balls are massless springs; a housing contributes the displacement that follows its race, and its modes with the
-//! race fixed ([`crate::solids::fixed_interface_modes`]). Axes do not rotate with the bodies, which are axisymmetric:
+//! race fixed ([`crate::reduction::fixed_interface_modes`]). Axes do not rotate with the bodies, which are axisymmetric:
 //! M, C, G and K are constant. At spin Ω about X a body of axial inertia J has moments J Ω against the rates of its
 //! tilts; its modes have those of [`crate::members::flexible_shaft`]. Dashpots and Maxwell elements whose first end is
 //! on a rotating body rotate with it, and feed whirl above the critical speed as internal damping does.
 
-use crate::assembly::lists::{Assembly, Body};
-use crate::assembly::loads::Rotation;
-use crate::assembly::static_lists::{Place, StaticAssembly};
-use crate::equilibrium::model::{Evaluation, Model};
-use crate::equilibrium::statics::AssemblySolution;
-use crate::members::beam::STATION;
-use crate::members::connection::{Connection, MaxwellElement};
-use crate::members::flexible_shaft::ElasticShaft;
-use crate::members::static_connection::{
+use crate::assembly::lists::Assembly;
+use crate::equilibrium::connection::{
     add_circulation, add_circulatory, add_damping, levers, spin_of,
 };
-use crate::members::static_shaft::{Moved, onto_unknowns, rows_onto_unknowns, sections};
-use crate::vibrations::critical_speeds::Critical;
-use crate::vibrations::quasi_static_limit::{
+use crate::equilibrium::lists::{Place, StaticAssembly};
+use crate::equilibrium::model::{Evaluation, Model};
+use crate::equilibrium::quasi_static_limit::{
     HousingMass, Mode, MovingBody, add_housings, modes, with_housings,
 };
+use crate::equilibrium::shaft::{Moved, onto_unknowns, rows_onto_unknowns, sections};
+use crate::equilibrium::statics::AssemblySolution;
+use crate::members::beam::STATION;
+use crate::members::body::{Body, Rotation};
+use crate::members::connection::{Connection, MaxwellElement};
+use crate::members::flexible_shaft::ElasticShaft;
+use crate::vibrations::critical_speeds::Critical;
 use crate::vibrations::relaxing::{Relaxing, settled};
 use crate::vibrations::rotor::{LinearSystem, RotorError, RotorModel};
 use nalgebra::{DMatrix, DVector};

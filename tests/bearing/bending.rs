@@ -7,24 +7,24 @@ use crate::bent_shafts::{
 };
 use crate::dynamics;
 
-use bearing_dynamics::assembly::lists::{Assembly, Mobility};
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::plan::counts::Counts;
-use bearing_dynamics::assembly::plan::{Stage, Subject};
-use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use bearing_dynamics::members::beam::{BeamMatrices, STATION};
+use bearing_dynamics::members::body::{Drive, DrivenBody, Mobility, Rotation};
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::members::flexible_shaft::{ElasticShaft, Section, ShaftSteps};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::rigid_body;
 use bearing_dynamics::members::shaft_modes::{Kept, ShaftShapes};
+use bearing_dynamics::members::state::{SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Integrator, Simulation, Start, Stepping};
 use bearing_dynamics::motion::stability::jacobian;
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::plan::counts::Counts;
+use bearing_dynamics::plan::{Stage, Subject};
 use dynamics::*;
 use nalgebra::{Complex, DMatrix, DVector, Vector3};
 
@@ -291,7 +291,7 @@ fn free_together() -> Assembly {
 fn a_free_bending_shaft_keeps_momentum_and_energy() {
     let assembly = free_together();
     let mut state = start::nominal(&assembly);
-    let places = bearing_dynamics::assembly::state::Places::of(&assembly);
+    let places = bearing_dynamics::assembly::places::Places::of(&assembly);
     let at = places.body(0);
     for (entry, value) in [(VELOCITY + 1, 0.02), (VELOCITY, 0.01), (SPIN, 300.0), (SPIN + 2, 0.3)] {
         state[at + entry] += value;
@@ -410,7 +410,7 @@ fn internal_damping_feeds_the_whirl_above_the_critical_speed() {
         on_springs(&mut assembly, &[0.0, 0.4], [1e7, 1e9, 1e9]);
         assembly.shafts[0].internal_damping = 3000.0;
         let mut state = start::nominal(&assembly);
-        let at = bearing_dynamics::assembly::state::Places::of(&assembly).body(0);
+        let at = bearing_dynamics::assembly::places::Places::of(&assembly).body(0);
         state[at + VELOCITY + 1] = 1e-3;
         let options = fixed_step(1e-6, Start::Nominal);
         let mut simulation = Simulation::from_state(assembly, options, state, 0.0).unwrap();

@@ -3,15 +3,15 @@
 use crate::bent_shafts::{STEEL, on_bearings, section};
 use crate::dynamics::*;
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::loads::Drive;
-use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::equilibrium::initial::at_start;
 use bearing_dynamics::equilibrium::statics::StaticsError;
 use bearing_dynamics::kinematics::vec3::dot;
+use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::members::flexible_shaft::{ShaftLoad, Unbalance};
 use bearing_dynamics::members::rigid_body::BodyKinematics;
+use bearing_dynamics::members::state::{SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Simulation, Start};
 use bearing_dynamics::motion::start::at_equilibrium;
 use bearing_dynamics::motion::system::System;

@@ -1,16 +1,14 @@
 //! Shafts that bend, alone, on springs and on bearings, what acts on them, and how far they go off their axis.
 
-use crate::common;
-use crate::dynamics;
-use crate::shafts;
+use crate::{common, dynamics, shafts};
 
-use bearing_dynamics::assembly::lists::{Assembly, GROUND, Mobility};
-use bearing_dynamics::assembly::loads::{DrivenBody, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
+use bearing_dynamics::members::body::{DrivenBody, GROUND, Mobility, Rotation};
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::members::flexible_shaft::{ElasticShaft, Section, ShaftLoad, Unbalance};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::shaft_modes::{Kept, free_shaft};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;

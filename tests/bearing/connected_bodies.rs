@@ -1,24 +1,24 @@
 //! Bodies that connections join: momentum and books in motion, equilibria, the bound on the step.
 
 use crate::connections::{SPRING, kinds, pair, spring};
-use crate::dynamics;
-use crate::shafts;
+use crate::{dynamics, shafts};
 
-use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility};
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{POSITION, Places, SPIN, VELOCITY};
-use bearing_dynamics::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBody};
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::places::Places;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::equilibrium::initial::at_start;
+use bearing_dynamics::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticBody};
 use bearing_dynamics::equilibrium::statics::{
-    Condition, Determinacy, StaticOptions, StaticsError, solve_assembly,
+    Determinacy, StaticOptions, StaticsError, solve_assembly,
 };
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::{Body, Condition, Drive, DrivenBody, Mobility, Rotation};
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::rigid_body;
 use bearing_dynamics::members::rigid_body::kinematics_at_mount;
+use bearing_dynamics::members::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Simulation, SimulationError, Start};
 use bearing_dynamics::motion::stability::step_limit;
 use bearing_dynamics::motion::start;

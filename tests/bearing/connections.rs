@@ -3,12 +3,12 @@
 
 use crate::dynamics;
 
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::BodyState;
 use bearing_dynamics::members::connection::{
     Connection, CrossCoupling, Law, MaxwellElement, SpringDashpot, Torsion,
 };
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::rigid_body::{BodyKinematics, kinematics_at_mount};
+use bearing_dynamics::members::state::BodyState;
 use dynamics::*;
 use nalgebra::{UnitQuaternion, Vector3};
 

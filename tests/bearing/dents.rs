@@ -3,8 +3,7 @@
 
 use super::dynamics_integrators::{motion, started};
 use crate::dynamics::{self, RPM, free_race};
-use bearing_dynamics::assembly::loads::DynamicProblem;
-use bearing_dynamics::assembly::state::{POSITION, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, Material};
 use bearing_dynamics::ch2_housing::bearing::hertz::{
     HertzContact, HertzModel, RaceSide, contact, contact_ellipse,
@@ -17,6 +16,7 @@ use bearing_dynamics::members::dent_table::{
     Bed, DentOn, DentedContact, Fineness, dent_table, usual_table,
 };
 use bearing_dynamics::members::half_space::{Grid, Influence, love, press};
+use bearing_dynamics::members::state::{POSITION, VELOCITY};
 use bearing_dynamics::motion::simulation::{Integrator, Stepping};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;

@@ -1,23 +1,22 @@
 //! Balls that no cage keeps apart: their contact against Hertz's closed form, momentum, energy, and
 //! what it costs where nothing is near; states in which a run must end; random scenes.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 mod random_scenes;
 
-use bearing_dynamics::assembly::lists::BallMeeting;
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
-use bearing_dynamics::assembly::state::{Layout, Ledger, POSITION};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{ball_contact, peak_pressure};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::slices::Motion;
+use bearing_dynamics::members::bearing::{BallMeeting, HERTZ_SCALE};
+use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{Layout, Ledger, POSITION};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::motion::stability::step_limit;
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::step_watch::stiffness;
 use bearing_dynamics::motion::system::System;
-use bearing_dynamics::motion::validity::HERTZ_SCALE;
 use bearing_dynamics::numeric::profile::Profile;
 use common::{full_complement, table_4_1, table_5_3};
 use dynamics::*;

@@ -1,7 +1,6 @@
 //! Where a cage touches: its pockets and its guide against the surfaces they stand for.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
 use bearing_dynamics::ch2_housing::bearing::cage::{
     AxisMotion, CageContacts, Guidance, Pocket, guide_contact, pocket_contact,

@@ -1,16 +1,16 @@
 //! Laws of the contact forces at one instant: action and reaction, frame invariance, energy.
 #![allow(clippy::needless_range_loop)] // indices are the notation of components
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, LEDGER, Ledger, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::{ContactDamping, normal_load};
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::{Drive, RotatingLoad, Rotation};
 use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::members::state::{BodyState, LEDGER, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::numeric::profile::Profile;
 use common::{full_complement, table_4_1, table_5_3};

@@ -1,25 +1,23 @@
 //! Integrators with error estimate: their coefficients, orders, stability, and whether the accuracy
 //! that is asked for is delivered.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::assembly::state::{
-    BODY, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
-};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::{Drive, RotatingLoad};
 use bearing_dynamics::members::contacts::Kernel;
-use bearing_dynamics::motion::dormand_prince as dopri;
+use bearing_dynamics::members::state::{
+    BODY, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
+};
 use bearing_dynamics::motion::error_control::{Attempt, SHARE};
 use bearing_dynamics::motion::orbit_frame::OrbitFrames;
-use bearing_dynamics::motion::rosenbrock as ros;
 use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Stepping,
 };
-use bearing_dynamics::motion::start;
+use bearing_dynamics::motion::{dormand_prince as dopri, rosenbrock as ros, start};
 use bearing_dynamics::numeric::profile::Profile;
 use common::table_4_1;
 use dynamics::{

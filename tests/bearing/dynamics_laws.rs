@@ -1,12 +1,8 @@
 //! Laws that single forces and motions obey, each against its closed form.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::assembly::state::{
-    BODY, BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY,
-};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
@@ -14,8 +10,10 @@ use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::equilibrium::statics::solve;
 use bearing_dynamics::kinematics::euler::about;
+use bearing_dynamics::members::body::{Drive, RotatingLoad, Rotation};
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::members::rigid_body::tilts_of;
+use bearing_dynamics::members::state::{BODY, BodyState, Layout, Ledger, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Simulation, Start};
 use bearing_dynamics::motion::stability::growth;
 use bearing_dynamics::motion::start;

@@ -2,17 +2,17 @@
 //! each other, a bearing that nothing holds.
 
 use super::dynamics_balls::options;
-use crate::common;
-use crate::dynamics;
-use bearing_dynamics::assembly::lists::gap_in_pockets;
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
-use bearing_dynamics::assembly::state::{BodyState, Layout, POSITION};
+use crate::{common, dynamics};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
+use bearing_dynamics::members::bearing::{HERTZ_SCALE, cage_room, gap_in_pockets};
+use bearing_dynamics::members::body::{Drive, FARTHEST};
+use bearing_dynamics::members::state::{BodyState, Layout, POSITION};
 use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
 use bearing_dynamics::motion::start;
-use bearing_dynamics::motion::validity::{FARTHEST, HERTZ_SCALE, cage_room, race_limit};
+use bearing_dynamics::motion::validity::race_limit;
 use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};
 use dynamics::*;

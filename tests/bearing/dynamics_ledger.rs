@@ -1,15 +1,15 @@
 //! What a run books as gained and lost against the integral of its powers, by every integrator.
 
 use super::dynamics_integrators::{fast, gentle, motion, rolling};
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::assembly::state::Ledger;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::{Drive, RotatingLoad, Rotation};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::Ledger;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::numeric::profile::Profile;

@@ -7,18 +7,18 @@
 //! loaded so lightly that δ is some 1 µm of a room of 360 µm: 2e-3.
 #![allow(clippy::needless_range_loop)] // indices are the notation of components
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 mod entries;
 mod point;
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot, scale};
+use bearing_dynamics::members::body::{Drive, Rotation};
 use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::members::state::{BodyState, Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;

@@ -1,16 +1,16 @@
 //! Leaving a part out equals running it with zero parameters; drivers and restarts change no bit;
 //! the work done is counted.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad, Rotation};
-use bearing_dynamics::assembly::state::{BODY, Layout, Ledger, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::members::body::{Drive, RotatingLoad, Rotation};
 use bearing_dynamics::members::contacts::{Kernel, Work};
+use bearing_dynamics::members::state::{BODY, Layout, Ledger, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Start};
 use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};

@@ -1,17 +1,17 @@
 //! What the moving bearing comes to rest in, and what it means over a turn, against statics.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, Layout, POSITION, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::equilibrium::statics::solve;
+use bearing_dynamics::members::body::{Drive, Rotation};
 use bearing_dynamics::members::rigid_body::tilts_of;
+use bearing_dynamics::members::state::{BodyState, Layout, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Simulation, Start};
 use bearing_dynamics::numeric::profile::Profile;
 use common::{table_4_1, table_5_3};

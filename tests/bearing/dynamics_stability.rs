@@ -1,11 +1,10 @@
 //! Violent motions; errors.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, Rotation};
-use bearing_dynamics::assembly::state::{Layout, Ledger, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
+use bearing_dynamics::members::body::{Drive, Rotation};
+use bearing_dynamics::members::state::{Layout, Ledger, VELOCITY};
 use bearing_dynamics::motion::simulation::{RunOptions, Simulation, SimulationError, Start};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::numeric::profile::Profile;

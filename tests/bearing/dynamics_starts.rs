@@ -1,15 +1,13 @@
 //! Starts in equilibrium: forces in balance, velocities that the loads give, refusals where nothing holds.
 
 use super::dynamics_settling::table_3_5;
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{
-    Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation,
-};
-use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::equilibrium::statics::StaticsError;
+use bearing_dynamics::members::body::{Drive, DrivenBody, RotatingLoad, Rotation};
+use bearing_dynamics::members::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };

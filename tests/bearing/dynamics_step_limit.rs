@@ -1,14 +1,14 @@
 //! The step limit against the observed one, and against the state that it follows from.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::{Drive, Rotation};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Simulation, Start};
 use bearing_dynamics::motion::stability::step_limit;
 use bearing_dynamics::motion::start;

@@ -2,13 +2,13 @@
 
 use super::dynamics_contacts::force_scale;
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::members::body::Rotation;
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::numeric::profile::Profile;

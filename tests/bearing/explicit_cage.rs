@@ -2,11 +2,11 @@
 
 use crate::flexible_cage::with_built_cage;
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::loads::Rotation;
-use bearing_dynamics::assembly::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::cage::Guidance;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, norm, scale, sub};
+use bearing_dynamics::members::body::Rotation;
+use bearing_dynamics::members::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::numeric::profile::Profile;

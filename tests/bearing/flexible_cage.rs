@@ -1,14 +1,14 @@
 //! Flexible cages: momentum and energy in a floating frame, and contacts by the nodes of the mesh.
 
-use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility};
-use bearing_dynamics::assembly::loads::Rotation;
-use bearing_dynamics::assembly::state::{BODY, BodyState};
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::cage::AxisMotion;
 use bearing_dynamics::ch5_cage::node_contact::depth_in_ball;
 use bearing_dynamics::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, norm, scale, sub};
+use bearing_dynamics::members::body::{Body, Mobility, Rotation};
 use bearing_dynamics::members::cage_nodes::{CageNodes, CageNow, Deformation};
 use bearing_dynamics::members::floating_solid::FloatingSolid;
 use bearing_dynamics::members::rigid_body::BodyKinematics;
+use bearing_dynamics::members::state::{BODY, BodyState};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::scene::Format;
@@ -65,7 +65,8 @@ fn free_cage() -> (Assembly, Vec<f64>) {
     // Tens of micrometres in each mode, in motion.
     state.extend((0..count).map(|k| 4e-6 * (1.0 + (k as f64).sin())));
     state.extend((0..count).map(|k| 0.02 * (2.0 * k as f64).cos()));
-    let ledger = bearing_dynamics::assembly::state::Places::of(&assembly).state_len() - state.len();
+    let ledger =
+        bearing_dynamics::assembly::places::Places::of(&assembly).state_len() - state.len();
     state.extend(vec![0.0; ledger]);
     (assembly, state)
 }

@@ -4,7 +4,8 @@
 use crate::common;
 
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough};
-use bearing_dynamics::equilibrium::statics::{Condition, Determinacy, StaticsError, solve};
+use bearing_dynamics::equilibrium::statics::{Determinacy, StaticsError, solve};
+use bearing_dynamics::members::body::Condition;
 use common::problem;
 
 /// An angular-contact bearing held askew at 100 rpm, on which a search that starts between the

@@ -4,7 +4,8 @@ use crate::common;
 
 use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
 use bearing_dynamics::ch2_housing::bearing::inertia;
-use bearing_dynamics::equilibrium::statics::{Condition, solve};
+use bearing_dynamics::equilibrium::statics::solve;
+use bearing_dynamics::members::body::Condition;
 use common::{problem, table_4_1, table_5_3};
 
 #[test]

@@ -2,30 +2,31 @@
 //!
 //! Stages are counted by the code that does their work.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::channels::ChannelGroup;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::{Assembly, INNER, OUTER};
-use bearing_dynamics::assembly::loads::{DynamicProblem, RotatingLoad};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::plan::counts::StageCounts;
-use bearing_dynamics::assembly::plan::motion::{Planned, items};
-use bearing_dynamics::assembly::plan::{Item, Stage, Subject, counted, statics};
-use bearing_dynamics::assembly::static_lists::Place;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::equilibrium::lists::Place;
+use bearing_dynamics::equilibrium::plan as statics;
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::members::body::{Condition, RotatingLoad};
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
 use bearing_dynamics::members::contacts::{Kernel, Want};
 use bearing_dynamics::members::housing_fit::Seat;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
+use bearing_dynamics::motion::plan::{Planned, items};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::plan::channels::ChannelGroup;
+use bearing_dynamics::plan::counts::StageCounts;
+use bearing_dynamics::plan::{Item, Stage, Subject, counted};
 use common::{FREE, problem, table_4_1};
 use dynamics::*;
 use nalgebra::Vector3;

@@ -1,11 +1,9 @@
 //! Profiles over time: where they jump or bend, and that a problem knows all of these times.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::loads::{
-    Drive, DrivenBody, DynamicProblem, RotatingLoad, Rotation,
-};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::members::body::{Drive, DrivenBody, RotatingLoad, Rotation};
 use bearing_dynamics::numeric::profile::Profile;
 use common::table_4_1;
 use dynamics::*;

@@ -3,13 +3,13 @@
 
 use super::dynamics_integrators::{motion, started};
 use crate::dynamics::{self, Noise, RPM, free_race};
-use bearing_dynamics::assembly::loads::DynamicProblem;
-use bearing_dynamics::assembly::state::{ORIENTATION, POSITION, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch5_cage::raceway_profile::{RacewayProfile, Spall, Surface, Waviness};
 use bearing_dynamics::ch5_cage::spall::{ROUNDED, SpallLaw, SpallShape};
 use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, norm, scale};
 use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::members::state::{ORIENTATION, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Integrator, Stepping};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;

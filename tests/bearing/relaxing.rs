@@ -4,13 +4,14 @@
 use super::dynamics_integrators::rows_of;
 use crate::dynamics;
 
-use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility};
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{POSITION, Places, VELOCITY};
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::places::Places;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
+use bearing_dynamics::members::body::{Body, Drive, DrivenBody, Mobility, Rotation};
 use bearing_dynamics::members::connection::{Connection, Law, MaxwellElement, SpringDashpot};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::mount::Mount;
+use bearing_dynamics::members::state::{POSITION, VELOCITY};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::motion::stability::step_limit;
 use bearing_dynamics::motion::start;

@@ -1,15 +1,13 @@
 //! Starts in which balls roll, whichever race turns.
 
 use super::shafts::{on_two, rates};
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::lists::Mobility;
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
-use bearing_dynamics::assembly::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::equilibrium::initial::static_assembly;
+use bearing_dynamics::members::body::{Drive, DrivenBody, Mobility, Rotation};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::numeric::profile::Profile;

@@ -1,10 +1,8 @@
 //! Accelerometers on bodies, against differences of where they are.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
 use crate::bent_shafts::{OVERHUNG, STEEL, alone, beam, on_springs, section, unbalanced};
-use bearing_dynamics::assembly::state::{BODY, BodyState, Layout};
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch5_cage::telemeter::Telemeter;
 use bearing_dynamics::members::contacts::Kernel;
@@ -15,6 +13,7 @@ use bearing_dynamics::members::sensor::{
     Accelerometer, Acquisition, CageTelemeter, NodeAccelerometer, Sensor, SensorKind, SensorMount,
 };
 use bearing_dynamics::members::shaft_modes::Kept;
+use bearing_dynamics::members::state::{BODY, BodyState, Layout};
 use bearing_dynamics::motion::simulation::{Simulation, Start};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;

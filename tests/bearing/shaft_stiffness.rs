@@ -2,14 +2,15 @@
 
 use crate::common;
 
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::{
-    Loaded, Place, StaticAssembly, StaticBearing, StaticBody,
-};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch2_housing::bearing::hertz::series_stiffness;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::equilibrium::lists::{
+    Loaded, Place, StaticAssembly, StaticBearing, StaticBody,
+};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::Condition;
+use bearing_dynamics::members::mount::Mount;
 use common::{FREE, problem, table_5_3};
 use nalgebra::{Matrix2, Vector2, Vector3};
 

@@ -1,19 +1,19 @@
 //! Several bearings on one rigid shaft: closed forms, balance, equilibrium and motion.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::lists::{Assembly, Bearing, Body, Mobility};
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{BodyState, POSITION, SPIN, VELOCITY};
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingGeometry;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::equilibrium::initial::{at_start, static_assembly};
 use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::members::bearing::Bearing;
+use bearing_dynamics::members::body::{Body, Drive, DrivenBody, Mobility, Rotation};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::rigid_body::{BodyKinematics, kinematics_at_mount};
+use bearing_dynamics::members::state::{BodyState, POSITION, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
@@ -213,7 +213,7 @@ fn a_free_shaft_and_its_bearings_keep_momentum_and_energy() {
             Mobility::Driven(DrivenBody { inertia: ring, ..free_race() }.into());
     }
     let mut state = start::nominal(&assembly);
-    let places = bearing_dynamics::assembly::state::Places::of(&assembly);
+    let places = bearing_dynamics::assembly::places::Places::of(&assembly);
     let at = places.body(0);
     for (entry, value) in [(VELOCITY + 1, 0.02), (VELOCITY, 0.01), (SPIN, 90.0), (SPIN + 2, 0.5)] {
         state[at + entry] += value;

@@ -71,10 +71,10 @@ mod profile {
 }
 
 mod static_seat {
-    use bearing_dynamics::assembly::mount::Mount;
+    use bearing_dynamics::equilibrium::housing_fit::*;
     use bearing_dynamics::kinematics::Pose;
+    use bearing_dynamics::members::mount::Mount;
     use bearing_dynamics::members::race_position::InnerRacePosition;
-    use bearing_dynamics::members::static_housing_fit::*;
     use nalgebra::UnitQuaternion;
     use nalgebra::{SMatrix, Vector3, Vector4, Vector5};
     use std::f64::consts::PI;
@@ -129,9 +129,9 @@ mod static_seat {
 }
 
 mod static_shaft {
-    use bearing_dynamics::assembly::static_lists::StaticSection;
+    use bearing_dynamics::equilibrium::lists::StaticSection;
+    use bearing_dynamics::equilibrium::shaft::*;
     use bearing_dynamics::members::flexible_shaft::Section;
-    use bearing_dynamics::members::static_shaft::*;
     use nalgebra::Vector5;
 
     fn section() -> StaticSection {
@@ -215,7 +215,7 @@ mod ledger_watch {
 
 mod tally {
 
-    use bearing_dynamics::assembly::plan::Stage;
+    use bearing_dynamics::plan::Stage;
 
     #[test]
     fn every_stage_has_its_number() {

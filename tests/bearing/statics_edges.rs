@@ -2,7 +2,8 @@
 
 use crate::common;
 
-use bearing_dynamics::equilibrium::statics::{Condition, Determinacy, StaticsError, solve};
+use bearing_dynamics::equilibrium::statics::{Determinacy, StaticsError, solve};
+use bearing_dynamics::members::body::Condition;
 use common::{FREE, problem, table_4_1};
 use nalgebra::Vector3;
 

@@ -5,9 +5,10 @@ use crate::common;
 use bearing_dynamics::ch2_housing::bearing::contact::groove_force;
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough};
 use bearing_dynamics::equilibrium::statics::{
-    Condition, StaticOptions, StaticProblem, StaticSolution, solve, solve_from,
+    StaticOptions, StaticProblem, StaticSolution, solve, solve_from,
 };
 use bearing_dynamics::kinematics::{Pose, euler};
+use bearing_dynamics::members::body::Condition;
 use common::{FREE, problem, table_4_1, table_5_3};
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 use proptest::prelude::*;

@@ -6,9 +6,9 @@ use crate::connected_bodies::free;
 use crate::dynamics::{CONSTANT, bearing, fixed_step};
 
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, Ledger};
+use bearing_dynamics::members::body::{Drive, DrivenBody, Rotation};
 use bearing_dynamics::members::shaft_modes::Kept;
+use bearing_dynamics::members::state::{BodyState, Ledger};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use nalgebra::{Matrix3, Vector3};

@@ -7,10 +7,11 @@ use crate::dynamics::{Noise, RPM, bearing};
 use crate::dynamics_integrators::started;
 
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::state::{BODY, BodyState, ORIENTATION, Places, SPIN};
+use bearing_dynamics::assembly::places::Places;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::members::connection::Law;
 use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::members::state::{BODY, BodyState, ORIENTATION, SPIN};
 use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
 use bearing_dynamics::motion::linearised::Linearised;
 use bearing_dynamics::motion::rosenbrock as ros;

@@ -1,9 +1,9 @@
 //! Work counts of the static solver and of error control, exact on any machine: a lost optimisation fails here.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve, solve_from};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve, solve_from};
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
 use common::{FREE, problem, table_4_1, table_5_3};
 use dynamics::{RPM, bearing, traction_laws};

@@ -1,7 +1,6 @@
 //! Explicit runs of a bearing in its housing that are interrupted, killed, extended or fail.
 
-use crate::housed_command_common;
-use crate::resume_common;
+use crate::{housed_command_common, resume_common};
 
 use housed_command_common::*;
 use resume_common::{assert_same_results, interrupted, stopped};

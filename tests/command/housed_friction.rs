@@ -1,7 +1,6 @@
 //! Friction in the bore of an explicit housing, as a scene asks for it: what is told, run, resumed and refused.
 
-use crate::housed_command_common;
-use crate::resume_common;
+use crate::{housed_command_common, resume_common};
 
 use housed_command_common::*;
 use resume_common::{assert_same_results, interrupted};

@@ -1,8 +1,7 @@
 //! A bearing in a reduced housing as a user meets it: beside explicit steps, its results, what it goes on from, what is
 //! refused.
 
-use crate::housed_command_common;
-use crate::resume_common;
+use crate::{housed_command_common, resume_common};
 
 use housed_command_common::*;
 use resume_common::assert_same_results;

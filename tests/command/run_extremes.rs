@@ -3,8 +3,9 @@
 use super::run_recorder::{column, table, to_the_end};
 use crate::run_common;
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
-use bearing_dynamics::assembly::state::POSITION;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::members::body::Drive;
+use bearing_dynamics::members::state::POSITION;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, SimulationError, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};

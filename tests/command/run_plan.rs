@@ -3,12 +3,13 @@
 use crate::command_line_common::{DEEP_GROOVE, done, read, scene as scene_file, write};
 use crate::run_common;
 
-use bearing_dynamics::assembly::channels::ChannelGroup;
-use bearing_dynamics::assembly::loads::{DynamicProblem, Rotation};
-use bearing_dynamics::assembly::plan;
-use bearing_dynamics::assembly::plan::motion::Planned;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::members::body::Rotation;
+use bearing_dynamics::plan::channels::ChannelGroup;
+
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::motion::integrator_choice::choose;
+use bearing_dynamics::motion::plan::{self, Planned};
 use bearing_dynamics::motion::simulation::{Integrator, Simulation};
 use bearing_dynamics::numeric::clock::given_steps;
 use bearing_dynamics::numeric::profile::Profile;
@@ -59,7 +60,7 @@ fn planned(text: &str, channels: &[ChannelGroup]) -> String {
         cage_left_out: &[left_out],
         solids: Vec::new(),
     };
-    plan::motion::items(planned).iter().map(|item| format!("{item}\n")).collect()
+    plan::items(planned).iter().map(|item| format!("{item}\n")).collect()
 }
 
 fn guided(by: &str) -> String {

@@ -2,13 +2,14 @@
 
 use crate::run_common;
 
-use bearing_dynamics::assembly::channels::ChannelGroup;
-use bearing_dynamics::assembly::loads::{DynamicProblem, Rotation};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::members::body::Rotation;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::recorder::Recorder;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
 use bearing_dynamics::output::table::RunTable;
+use bearing_dynamics::plan::channels::ChannelGroup;
 use run_common::{complete, frictionless, jolted, request, simulation};
 
 pub fn to_the_end(problem: DynamicProblem, request: &RunRequest) -> Session<'static> {

@@ -2,7 +2,8 @@
 
 use crate::run_common;
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::motion::simulation::{Integrator, SimulationError, Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::journal::JournalError;

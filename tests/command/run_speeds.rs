@@ -3,8 +3,9 @@
 use super::run_recorder::{table, to_the_end};
 use crate::run_common;
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::VELOCITY;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::members::body::{Drive, Rotation};
+use bearing_dynamics::members::state::VELOCITY;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session};

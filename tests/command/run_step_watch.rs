@@ -1,13 +1,12 @@
 //! A step that is or becomes too long does not spoil a run: one that was given is refused, one that
 //! follows from the limit is shortened.
 
-use crate::dynamics;
-use crate::run_common;
+use crate::{dynamics, run_common};
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
-use bearing_dynamics::assembly::plan::Stage;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::motion::simulation::{Simulation, SimulationError, Stepping};
 use bearing_dynamics::motion::stability::step_limit;
@@ -16,6 +15,7 @@ use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
 use bearing_dynamics::output::summary::{RunReport, run_summary};
 use bearing_dynamics::output::table::RunTable;
+use bearing_dynamics::plan::Stage;
 use dynamics::{RPM, bearing, traction_laws};
 use run_common::{common::table_4_1, of_steps, resumable, simulation, simulation_mut};
 use run_common::{pressed, request, sliding};

@@ -1,8 +1,7 @@
 //! A scene with a solid alone as a user meets it: values against closed forms, and what ParaView
 //! makes of the fields.
 
-use crate::outside_common;
-use crate::solid_command_common;
+use crate::{outside_common, solid_command_common};
 
 use outside_common::python_with_vtk;
 use serde_json::Value;

@@ -1,7 +1,6 @@
 //! Runs of a solid that are interrupted, killed, extended or fail.
 
-use crate::resume_common;
-use crate::solid_command_common;
+use crate::{resume_common, solid_command_common};
 
 use bearing_dynamics::numeric::clock::rounded;
 use resume_common::{assert_same_results, interrupted, stopped};

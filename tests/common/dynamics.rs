@@ -2,11 +2,9 @@
 #![allow(dead_code)]
 
 use crate::common::{FREE, problem};
+use bearing_dynamics::assembly::bearing_alone::{CageBody, DynamicProblem};
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::loads::{CageBody, Drive, DrivenBody, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{
-    BodyState, Layout, Ledger, ORIENTATION, POSITION, Places, SPIN, VELOCITY,
-};
+use bearing_dynamics::assembly::places::Places;
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
@@ -14,7 +12,11 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{BearingGeometry, Material
 use bearing_dynamics::ch2_housing::bearing::hertz::effective_modulus;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
+use bearing_dynamics::members::body::{Drive, DrivenBody, Rotation};
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{
+    BodyState, Layout, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY,
+};
 use bearing_dynamics::motion::energy::Energy;
 use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Start, Stepping};
 use bearing_dynamics::motion::start;

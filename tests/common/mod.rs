@@ -5,8 +5,9 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{
     BearingGeometry, ClearanceThrough, Material,
 };
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzModel, RaceSide, contact};
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem};
+use bearing_dynamics::equilibrium::statics::StaticProblem;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::Condition;
 use nalgebra::Vector3;
 
 pub const FREE: [Condition; 5] = [Condition::Load(0.0); 5];

@@ -1,7 +1,7 @@
 //! Bushings in elements beside a bearing: the shipped scene with `method` explicit or implicit.
 
-use bearing_dynamics::assembly::loads::Drive;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
+use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::members::connection::Law;
 use bearing_dynamics::motion::coupling::CoupledMotion;
 use bearing_dynamics::motion::simulation::RunOptions;

@@ -1,14 +1,9 @@
 //! Races in rough bores of solids in explicit steps (4.2.4.2): what friction holds, what it loses, and that the
 //! race gets what the bore gets.
 
-use crate::dynamics;
-use crate::housing_exchange;
+use crate::{dynamics, housing_exchange};
 
-use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility};
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::plan::Stage;
-use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{
     ContactNode, Cylinder, Frame, Penalty, contact_nodes,
@@ -16,11 +11,15 @@ use bearing_dynamics::ch2_housing::bore_contact::{
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch4_rotor::bore_friction::{BoreFriction, COEFFICIENT, STRETCH};
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::{Body, Drive, DrivenBody, Mobility, Rotation};
+use bearing_dynamics::members::mount::Mount;
+use bearing_dynamics::members::state::{SPIN, VELOCITY};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::motion::bore_friction::{Pressed, SeatFriction};
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::plan::Stage;
 use bearing_dynamics::solids::model::{DampedMotion, Prescribed, SolidModel, SolidProblem};
 use dynamics::race;
 use housing_exchange::*;

@@ -3,11 +3,11 @@
 use super::bore_friction::{LAW, STIFFNESS, TIGHT, rigid};
 use crate::housing_exchange;
 
-use bearing_dynamics::assembly::loads::Rotation;
-use bearing_dynamics::assembly::state::{SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bore_contact::{Cylinder, Frame, Penalty};
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::Rotation;
+use bearing_dynamics::members::state::{SPIN, VELOCITY};
 use bearing_dynamics::motion::bore_friction::{Pressed, SeatFriction};
 use bearing_dynamics::motion::coupling::CoupledMotion;
 use bearing_dynamics::motion::race_in_bore::Seat;

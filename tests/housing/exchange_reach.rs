@@ -6,8 +6,8 @@ use super::housing_exchange::{
 use crate::dynamics;
 
 use bearing_dynamics::assembly::lists::OUTER;
-use bearing_dynamics::assembly::state::VELOCITY;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::members::state::VELOCITY;
 use bearing_dynamics::motion::coupling::CouplingError;
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;

@@ -5,9 +5,10 @@ use crate::housing_common;
 
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::equilibrium::statics;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem, StaticsError};
+use bearing_dynamics::equilibrium::statics::{StaticProblem, StaticsError};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::recorder::seat::SeatRow;

@@ -10,6 +10,7 @@ use bearing_dynamics::kinematics::euler::about;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::reduction::load_patterns::race_under_load;
 use bearing_dynamics::solids::bore_equilibrium::{
     Axial, BoreError, BoreSearch, BoreState, Fit, RaceLoad,
 };
@@ -17,7 +18,6 @@ use bearing_dynamics::solids::condensation::{
     CondenseError, CondensedBore, Reach, condense, geometry_error,
 };
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solids::load_patterns::race_under_load;
 use bearing_dynamics::solids::model::{Prescribed, SolidModel};
 use housing_common::*;
 use nalgebra::Vector3;

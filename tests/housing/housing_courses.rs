@@ -6,15 +6,15 @@ use crate::housed::{
 };
 use crate::housing_common;
 
-use bearing_dynamics::assembly::loads::RotatingLoad;
 use bearing_dynamics::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::equilibrium::exact_gap_iteration::solve_with_true_distances;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticsError};
+use bearing_dynamics::equilibrium::quasi_static_limit::{housing_mass, lowest_frequency};
+use bearing_dynamics::equilibrium::statics::StaticsError;
+use bearing_dynamics::members::body::{Condition, RotatingLoad};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::bore_equilibrium::{BoreError, Fit};
-use bearing_dynamics::vibrations::quasi_static_limit::{housing_mass, lowest_frequency};
 use housing_common::*;
 use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_4, TAU};

@@ -1,18 +1,18 @@
 //! Bearing and housing in explicit steps that exchange impulses: momentum, energy, the balance that
 //! they settle in, and what is refused.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::OUTER;
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty, contact_nodes};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::{Drive, DrivenBody, Rotation};
+use bearing_dynamics::members::mount::Mount;
+use bearing_dynamics::members::state::{POSITION, SPIN, VELOCITY};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::motion::coupling::{
     CoupledMotion, CouplingError, CouplingOptions, SolidPart,

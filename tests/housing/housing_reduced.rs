@@ -2,34 +2,34 @@
 //! known.
 #![allow(clippy::needless_range_loop)] // indices are the notation of components
 
-use crate::common;
-use crate::dynamics;
-use crate::housing_common;
+use crate::{common, dynamics, housing_common};
 
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::{Assembly, OUTER};
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::plan::counts::Counts;
-use bearing_dynamics::assembly::plan::solid::SolidSteps;
-use bearing_dynamics::assembly::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::kinematics::vec3::{add, cross, dot, scale};
+use bearing_dynamics::members::body::{Drive, DrivenBody, Rotation};
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::members::reduced_solid::ReducedSolid;
+use bearing_dynamics::members::state::{ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::motion::reduced_start;
 use bearing_dynamics::motion::reduced_start::{add_housing, put_in_equilibrium};
 use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
 };
-use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
+use bearing_dynamics::motion::{reduced_start, start};
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::plan::counts::Counts;
+use bearing_dynamics::reduction::component_modes::{
+    CutOff, ReduceError, ReduceOptions, Reduction, reduce,
+};
+use bearing_dynamics::reduction::load_patterns::{LargestLoads, LoadPatterns, pressed};
 use bearing_dynamics::solids::bore_equilibrium::{Axial, Fit};
 use bearing_dynamics::solids::condensation::{CondensedBore, condense};
-use bearing_dynamics::solids::load_patterns::{LargestLoads, LoadPatterns, pressed};
 use bearing_dynamics::solids::model::{Load, SolidModel};
-use bearing_dynamics::solids::reduction::{CutOff, ReduceError, ReduceOptions, Reduction, reduce};
+use bearing_dynamics::solids::plan::SolidSteps;
 use bearing_dynamics::solids::tangent::{Unknowns, pattern, stiffness};
 use common::table_4_1;
 use dynamics::*;

@@ -2,16 +2,15 @@
 
 use crate::housing_common;
 
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::{
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::equilibrium::lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSeat,
 };
-use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::equilibrium::statics::{
-    AssemblySolution, Condition, StaticOptions, solve_assembly,
-};
+use bearing_dynamics::equilibrium::statics::{AssemblySolution, StaticOptions, solve_assembly};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::euler::{about, quaternion};
+use bearing_dynamics::members::body::Condition;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreSearch, BoreState, Fit};
 use bearing_dynamics::solids::condensation::CondensedBore;

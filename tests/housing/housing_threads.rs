@@ -4,13 +4,13 @@ use super::several_housings::{
     Housing, fitted, housed, left, on_two, options, right, shaft, struck,
 };
 
-use bearing_dynamics::assembly::channels::ChannelGroup;
-use bearing_dynamics::assembly::lists::Mobility;
-use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::members::body::Mobility;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingError};
 use bearing_dynamics::output::session::{HousedParts, Motion, Parts, RunRequest, Session, Status};
 use bearing_dynamics::output::state::{self, StateRecord, Stopped};
+use bearing_dynamics::plan::channels::ChannelGroup;
 
 fn parts(threads: usize) -> HousedParts<'static> {
     // Enough elements for two threads each.

@@ -6,15 +6,15 @@ use crate::housing_common::*;
 
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::equilibrium::quasi_static_limit::{MovingBody, housing_mass, modes};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::tet_mesh::Elements;
-use bearing_dynamics::solids::condensation::{CondensedBore, condense};
-use bearing_dynamics::solids::fixed_interface_modes::{
+use bearing_dynamics::reduction::fixed_interface_modes::{
     Natural, natural_modes_of, vibrating_housing,
 };
+use bearing_dynamics::solids::condensation::{CondensedBore, condense};
 use bearing_dynamics::solids::model::SolidModel;
 use bearing_dynamics::solids::tangent::{PRESCRIBED, pattern, stiffness};
-use bearing_dynamics::vibrations::quasi_static_limit::{MovingBody, housing_mass, modes};
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 

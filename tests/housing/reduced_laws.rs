@@ -5,11 +5,11 @@ use crate::housing_common::{BORE, YOUNG};
 use crate::housing_reduced::*;
 
 use bearing_dynamics::assembly::lists::{Assembly, OUTER};
-use bearing_dynamics::assembly::loads::Drive;
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{LEDGER, POSITION};
+use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::reduced_solid::{ModalLoad, Surface, SurfaceNode};
+use bearing_dynamics::members::state::{LEDGER, POSITION};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::numeric::profile::Profile;

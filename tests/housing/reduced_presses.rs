@@ -2,11 +2,10 @@
 
 use crate::housing_reduced::{Housing, fit, ring};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::reduction::component_modes::{LEFT_OUT, ReduceOptions, reduce};
+use bearing_dynamics::reduction::load_patterns::{LargestLoads, pressed, race_under_load};
 use bearing_dynamics::solids::bore_equilibrium::{BoreSearch, BoreState, RaceLoad};
 use bearing_dynamics::solids::condensation::CondensedBore;
-use bearing_dynamics::solids::load_patterns::race_under_load;
-use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
-use bearing_dynamics::solids::reduction::{LEFT_OUT, ReduceOptions, reduce};
 use bearing_dynamics::solids::tangent::{Unknowns, pattern, stiffness};
 use nalgebra::DMatrix;
 

@@ -3,17 +3,17 @@
 #![allow(clippy::needless_range_loop)] // indices are the notation of components
 
 use super::housing_reduced::{mounted, options, plain, rates_of, ring, settled, state_of};
-use crate::dynamics;
-use crate::housing_common;
+use crate::{dynamics, housing_common};
 
-use bearing_dynamics::assembly::lists::{Assembly, Body, INNER, Mobility, OUTER};
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{POSITION, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::assembly::lists::{Assembly, INNER, OUTER};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
+use bearing_dynamics::members::body::{Body, Drive, Mobility};
 use bearing_dynamics::members::contacts::Want;
 use bearing_dynamics::members::housing_fit::Seat;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::reduced_solid::{ModalLoad, ReducedSolid};
+use bearing_dynamics::members::state::{POSITION, VELOCITY};
 use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
 use bearing_dynamics::motion::error_control::{Attempt, Controller, SHARE};
 use bearing_dynamics::motion::linearised::Linearised;

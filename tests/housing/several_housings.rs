@@ -1,13 +1,10 @@
 //! A shaft on two bearings in two housings, all in explicit steps: momentum and energy over the coupling steps, mirrored
 //! halves, the order of lists, where it settles, and what a housing comes to that is as good as rigid.
 
-use crate::common;
-use crate::dynamics;
+use crate::{common, dynamics};
 
-use bearing_dynamics::assembly::lists::{Assembly, Bearing, Body, Mobility};
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{BODY, BodyState, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{
@@ -15,6 +12,10 @@ use bearing_dynamics::ch2_housing::bore_contact::{
 };
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::bearing::Bearing;
+use bearing_dynamics::members::body::{Body, Drive, DrivenBody, Mobility, Rotation};
+use bearing_dynamics::members::mount::Mount;
+use bearing_dynamics::members::state::{BODY, BodyState, SPIN, VELOCITY};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
 use bearing_dynamics::mesh::tet_mesh::Elements;
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};

@@ -1,11 +1,11 @@
 //! Joints of shafts and elements, and the closed forms of chapter 3.
 
 mod stepped_shaft {
-    use bearing_dynamics::assembly::state::BodyState;
     use bearing_dynamics::ch4_rotor::section::RotorSection;
     use bearing_dynamics::kinematics::vec3::norm;
     use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot};
     use bearing_dynamics::members::connection::SpringDashpot;
+    use bearing_dynamics::members::state::BodyState;
     use bearing_dynamics::motion::explicit_shaft::*;
     use bearing_dynamics::numeric::profile::Profile;
     use nalgebra::{UnitQuaternion, Vector3};

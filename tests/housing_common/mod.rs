@@ -7,8 +7,9 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzModel, RaceSide, contact};
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, contact_nodes};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem};
+use bearing_dynamics::equilibrium::statics::StaticProblem;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::numeric::profile::Profile;

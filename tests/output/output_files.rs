@@ -4,7 +4,6 @@
 #[allow(dead_code)]
 use crate::output_common;
 
-use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
 use bearing_dynamics::equilibrium::statics::{Determinacy, StaticSolution};
 use bearing_dynamics::output::atomic::{WriteError, remove_partials};
 use bearing_dynamics::output::compare::tolerance::ToleranceClass;
@@ -13,6 +12,7 @@ use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pa
 use bearing_dynamics::output::results::{ResultsError, static_summary, write_static_results};
 use bearing_dynamics::output::series::{Column, Series, SeriesError};
 use bearing_dynamics::output::visible::{visible, visible_line};
+use bearing_dynamics::plan::{Item, Stage, Subject};
 use nalgebra::DVector;
 use ndarray::Array2;
 use output_common::{run, solution};

@@ -1,11 +1,11 @@
 //! A static solution that looks like one: radial load downwards, three balls in contact.
 //! It obeys no equation; the output does not care.
 
-use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
 use bearing_dynamics::equilibrium::statics::{
     BallState, ContactState, Determinacy, StaticSolution,
 };
 use bearing_dynamics::output::results::{RunRecord, quantity};
+use bearing_dynamics::plan::{Item, Stage, Subject};
 use nalgebra::{SMatrix, SVector, Vector3};
 use serde_json::json;
 use std::f64::consts::TAU;

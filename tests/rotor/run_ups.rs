@@ -1,10 +1,10 @@
 //! Run-ups that try a bent shaft: right, or a typed error.
 
-use bearing_dynamics::assembly::channels::ChannelGroup;
 use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
 use bearing_dynamics::motion::error::SimulationError;
 use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::output::session::{RunRequest, Session};
+use bearing_dynamics::plan::channels::ChannelGroup;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 

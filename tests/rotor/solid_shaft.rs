@@ -3,14 +3,14 @@
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch4_rotor::beam::ShearCoefficient;
 use bearing_dynamics::members::beam::{Beam, BeamError, BeamMatrices, BeamSegment, STATION};
+use bearing_dynamics::members::condensed_shaft::{SolidShaftError, matrices, section};
+use bearing_dynamics::members::meshed_shaft::ShaftMesh;
 use bearing_dynamics::members::shaft_modes::{BendingPlane, Kept, ShaftShapes, free_shaft};
 use bearing_dynamics::mesh::generate::{ShaftStep, shaft, stepped_shaft, uniform};
 use bearing_dynamics::mesh::measure::total_area;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::numeric::profile::Profile;
-use bearing_dynamics::solids::condensed_shaft::{SolidShaftError, matrices, section};
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
-use bearing_dynamics::solids::meshed_shaft::ShaftMesh;
 use bearing_dynamics::solids::model::{DampedMotion, Load, Prescribed, SolidModel, SolidProblem};
 use nalgebra::{DMatrix, DVector};
 

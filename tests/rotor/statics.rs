@@ -2,18 +2,19 @@
 
 use crate::beam::{E, full, steel};
 use crate::common::table_4_1;
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::{
-    Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSection, StaticShaft,
-};
 use bearing_dynamics::ch2_housing::bearing::geometry::Material;
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzModel, RaceSide, contact};
+use bearing_dynamics::equilibrium::lists::{
+    Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSection, StaticShaft,
+};
 use bearing_dynamics::equilibrium::statics::{
-    AssemblySolution, Condition, StaticOptions, StaticsError, solve_assembly,
+    AssemblySolution, StaticOptions, StaticsError, solve_assembly,
 };
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::members::beam::Beam;
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::shaft_modes::{Kept, ShaftShapes, free_shaft};
 use nalgebra::{UnitQuaternion, Vector3};
 

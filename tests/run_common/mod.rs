@@ -3,18 +3,18 @@
 
 pub(crate) use crate::common;
 
-use bearing_dynamics::assembly::channels::ChannelGroup;
-use bearing_dynamics::assembly::loads::{CageBody, Drive, DrivenBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::bearing_alone::{CageBody, DynamicProblem};
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::inertia::{self, Inertia};
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::body::{Condition, Drive, DrivenBody, Rotation};
 use bearing_dynamics::motion::checkpoint::Checkpoint as BearingCheckpoint;
 use bearing_dynamics::motion::simulation::{RunOptions, Simulation, SimulationError, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{Checkpoint, RunRequest, Session, SessionError};
+use bearing_dynamics::plan::channels::ChannelGroup;
 
 /// Table 4.1's bearing under 250 N down, at 1000 rpm, no traction, no cage, fixed outer race.
 pub fn frictionless() -> DynamicProblem {

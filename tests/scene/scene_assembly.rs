@@ -2,10 +2,10 @@
 
 use crate::assembly_common::BEARING;
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::loads::{Drive, Rotation};
-use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
+use bearing_dynamics::members::body::{Drive, Rotation};
 use bearing_dynamics::members::connection::{Law, MaxwellElement};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::statics::static_problem;

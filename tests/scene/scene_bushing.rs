@@ -2,10 +2,10 @@
 
 use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::members::connection::{Law, SpringDashpot};
+use bearing_dynamics::members::prony::bushing_spring;
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::scene::build::assembly::{AssemblyScene, SpringAt};
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
-use bearing_dynamics::solids::rubber::prony::bushing_spring;
 use std::f64::consts::TAU;
 
 const SHIPPED: &str = include_str!("../../scenes/bearing_on_bushing.toml");

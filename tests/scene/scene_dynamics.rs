@@ -1,10 +1,10 @@
 //! Scenes of bearings in motion: what is written becomes what is simulated.
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::{CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
-use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::body::{Condition, Drive, Rotation};
 use bearing_dynamics::motion::simulation::{Integrator, Simulation, Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::scene;

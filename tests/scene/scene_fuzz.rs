@@ -5,9 +5,8 @@
 
 use crate::fuzz_common;
 
-use bearing_dynamics::assembly::loads::{Drive, Rotation};
 use bearing_dynamics::ch2_housing::bearing::traction::coefficient;
-use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::body::{Condition, Drive, Rotation};
 use bearing_dynamics::motion::simulation::Stepping;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::scene;

@@ -2,7 +2,7 @@
 
 use bearing_dynamics::ch2_housing::bearing::geometry::{BearingKind, ClearanceThrough, Material};
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzModel;
-use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::scene;
 use bearing_dynamics::scene::tables::keys;
 use bearing_dynamics::scene::tables::keys::{Kind, Need};

@@ -1,7 +1,7 @@
 //! A body of a scene that bends.
 
-use bearing_dynamics::assembly::lists::{Assembly, Body};
-use bearing_dynamics::assembly::loads::Rotation;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::members::body::{Body, Rotation};
 use bearing_dynamics::scene::build::shaft::take_shafts;
 use bearing_dynamics::scene::{Document, Format, Subject, resolve_subject};
 

@@ -1,7 +1,7 @@
 //! From the text of a scene to the numbers the solver gets, each by a formula of its own.
 
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzContact;
-use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::scene;
 use bearing_dynamics::scene::Format;
 use bearing_dynamics::scene::build::statics::{kinematic_ratios, static_problem};

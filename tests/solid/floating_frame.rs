@@ -3,7 +3,7 @@
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch5_cage::floating_frame::{FloatingFrame, Scratch};
 use bearing_dynamics::mesh::generate::{Ring, RingMesh, ring};
-use bearing_dynamics::solids::floating_reduction::{FloatingReduction, reduce_floating};
+use bearing_dynamics::reduction::floating::{FloatingReduction, reduce_floating};
 use bearing_dynamics::solids::model::{SolidModel, SolidProblem};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;

@@ -1,17 +1,17 @@
 //! Steps of rubber that go on from a checkpoint, what they do by their plan, and the stresses that they leave.
 
-use bearing_dynamics::assembly::plan::counts::{Counts, StageCounts};
-use bearing_dynamics::assembly::plan::rubber::{Method, items};
-use bearing_dynamics::assembly::plan::{Item, counted};
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, named};
 use bearing_dynamics::elements::tet10::POINTS;
 use bearing_dynamics::mesh::Elements;
 use bearing_dynamics::mesh::generate::bar;
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::plan::counts::{Counts, StageCounts};
+use bearing_dynamics::plan::{Item, counted};
 use bearing_dynamics::solids::model::Load;
 use bearing_dynamics::solids::rubber::checkpoint::RubberCheckpoint;
 use bearing_dynamics::solids::rubber::measures::{point_stresses, stresses};
 use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
+use bearing_dynamics::solids::rubber::plan::{Method, items};
 use bearing_dynamics::solids::rubber::relaxed::relaxed;
 use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 use bearing_dynamics::solids::rubber::vibration::vibrations;

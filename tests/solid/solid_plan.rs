@@ -2,15 +2,15 @@
 
 use crate::solid_common;
 
-use bearing_dynamics::assembly::plan::counts::{Counts, StageCounts};
-use bearing_dynamics::assembly::plan::solid::{Method, items};
-use bearing_dynamics::assembly::plan::{Item, Stage, Subject, counted};
 use bearing_dynamics::mesh::tet_mesh::Order;
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::plan::counts::{Counts, StageCounts};
+use bearing_dynamics::plan::{Item, Stage, Subject, counted};
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solids::model::{Load, Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solids::modes::{ModeOptions, modes};
+use bearing_dynamics::solids::plan::{Method, items};
 use solid_common::{cut_cubes, solid};
 
 /// A block that stands on its nodes at x = 0, with a load, weight and damping.

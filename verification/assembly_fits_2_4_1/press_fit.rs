@@ -4,9 +4,9 @@
 use bearing_dynamics::ch2_housing::bore_contact::{Penalty, REFERENCE_AREA, STEEL_NODE_STIFFNESS};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::reduction::load_patterns::race_under_load;
 use bearing_dynamics::solids::bore_equilibrium::{BoreSearch, RaceLoad};
 use bearing_dynamics::solids::condensation::CondensedBore;
-use bearing_dynamics::solids::load_patterns::race_under_load;
 use bearing_dynamics::solids::model::{Prescribed, SolidModel};
 
 use super::oracle::{Ring, in_series};

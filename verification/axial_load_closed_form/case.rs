@@ -1,6 +1,7 @@
 //! Table 5.3's bearing under 445 N axial load against the closed form of uniform load.
 
-use bearing_dynamics::equilibrium::statics::{Condition, solve};
+use bearing_dynamics::equilibrium::statics::solve;
+use bearing_dynamics::members::body::Condition;
 
 use crate::bearings::{self, ANGULAR_CONTACT, Hertz};
 use crate::case::{Case, CaseError, Tier};

@@ -1,6 +1,6 @@
 //! The largest stable step: predicted from the Jacobian, from a closed form, and observed.
 
-use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::members::contacts::Kernel;
 use bearing_dynamics::motion::simulation::Simulation;

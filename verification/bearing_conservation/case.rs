@@ -1,10 +1,11 @@
 //! What a bearing in motion conserves, and how closely the integration in time keeps it.
 
-use bearing_dynamics::assembly::loads::{CageBody, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, Layout, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::{CageBody, DynamicProblem};
 use bearing_dynamics::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::inertia;
+use bearing_dynamics::members::body::Rotation;
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{BodyState, Layout, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Start};
 use bearing_dynamics::motion::stability::step_limit;
 use bearing_dynamics::motion::start;

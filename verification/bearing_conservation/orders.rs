@@ -1,8 +1,9 @@
 //! Order of the integration: four on smooth motion, five halves where contacts make and break.
 
-use bearing_dynamics::assembly::loads::{DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{Layout, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::Rotation;
+use bearing_dynamics::members::state::{Layout, VELOCITY};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};

@@ -2,9 +2,9 @@
 
 use core::f64::consts::PI;
 
-use bearing_dynamics::assembly::state::{Layout, SPIN};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
 use bearing_dynamics::members::contacts::Kernel;
+use bearing_dynamics::members::state::{Layout, SPIN};
 use bearing_dynamics::motion::start;
 use bearing_dynamics::motion::system::System;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};

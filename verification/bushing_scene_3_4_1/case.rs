@@ -3,11 +3,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use bearing_dynamics::assembly::plan::counts::Counts;
 use bearing_dynamics::ch3_bushing::hysteresis::of_loop;
 use bearing_dynamics::motion::simulation::RunOptions;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::session::{Motion, Parts, RubberParts, RunRequest, Session, Status};
+use bearing_dynamics::plan::counts::Counts;
 use bearing_dynamics::scene::build::rubber::{RubberSetup, rubber_setup, vibrating};
 use bearing_dynamics::scene::build::solid_mesh::build;
 use bearing_dynamics::scene::resolve::solid_scene::{Law, RunSteps, SolidRun};

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use bearing_dynamics::assembly::loads::DynamicProblem;
-use bearing_dynamics::assembly::state::{Layout, SPIN, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::cage::CageForce;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::state::{Layout, SPIN, VELOCITY};
 use bearing_dynamics::motion::simulation::{RunOptions, Simulation, Stepping};
 use bearing_dynamics::motion::system::System;
 

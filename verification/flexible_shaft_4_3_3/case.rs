@@ -1,18 +1,17 @@
 //! Tables 4.2 and 4.3 with fixed outer races: a beam on two bearings at rest.
 
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::{
+use bearing_dynamics::ch4_rotor::beam::ShearCoefficient;
+use bearing_dynamics::equilibrium::lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSection, StaticShaft,
 };
-use bearing_dynamics::ch4_rotor::beam::ShearCoefficient;
-use bearing_dynamics::equilibrium::statics::{
-    AssemblySolution, Condition, StaticOptions, solve_assembly,
-};
+use bearing_dynamics::equilibrium::statics::{AssemblySolution, StaticOptions, solve_assembly};
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::members::beam::{Beam, BeamSegment};
+use bearing_dynamics::members::body::Condition;
+use bearing_dynamics::members::meshed_shaft::ShaftMesh;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::shaft_modes::{Kept, RigidPart, ShaftShapes, free_shaft};
 use bearing_dynamics::mesh::Order;
-use bearing_dynamics::solids::meshed_shaft::ShaftMesh;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 

@@ -163,7 +163,7 @@ fn contacts_of_table_2_2(context: &mut CaseContext) -> Result<(), CaseError> {
     // Table 2.2 prints a ball of 5.955 mm: 4 µm of interference between races of Table 2.2.
     let lengths = Lengths { clearance: -4e-6, ..DEEP_GROOVE };
     for (model, name, label) in [(Hertz::Fit, "fit", "fit"), (Hertz::Exact, "exact", "exact")] {
-        let free = [bearing_dynamics::equilibrium::statics::Condition::Load(0.0); 5];
+        let free = [bearing_dynamics::members::body::Condition::Load(0.0); 5];
         let ours = bearings::problem(&lengths, model, 0.0, free)?;
         let theirs = bearings::oracle(&lengths, model, 0.0);
         let pairs = [
@@ -232,7 +232,7 @@ fn fit_error(context: &mut CaseContext) -> Result<(), CaseError> {
         .relative(1e-13, "a difference of 0.09 between two numbers good to 1e-15")
         .golden(GoldenTolerance::REORDERED),
     );
-    let free = [bearing_dynamics::equilibrium::statics::Condition::Load(0.0); 5];
+    let free = [bearing_dynamics::members::body::Condition::Load(0.0); 5];
     let table = bearings::problem(&DEEP_GROOVE, Hertz::Fit, 0.0, free)?;
     let marks = [&table.inner_contact, &table.outer_contact]
         .map(|contact| contact.radius_transverse / contact.radius_rolling);

@@ -1,9 +1,10 @@
 //! A bearing in its housing in equilibrium, against a solution that shares the mesh and the nodes' shares of the bore.
 
 use bearing_dynamics::ch2_housing::bore_contact::{Cylinder, Frame, contact_nodes, touch};
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem};
+use bearing_dynamics::equilibrium::statics::StaticProblem;
 use bearing_dynamics::kinematics::Pose;
 use bearing_dynamics::kinematics::euler::quaternion;
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::solids::condensation::{CondensedBore, Reach, condense};
 use nalgebra::{DMatrix, Rotation3, UnitQuaternion, Vector3};

@@ -1,12 +1,13 @@
 //! A rigid shaft on two bearings in two housings, against a solution of its own.
 
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::{
+use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::equilibrium::lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody, StaticSeat,
 };
-use bearing_dynamics::ch2_housing::bore_contact::Penalty;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve_assembly};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_assembly};
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::Condition;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::solids::condensation::CondensedBore;
 use nalgebra::{DMatrix, Vector3};

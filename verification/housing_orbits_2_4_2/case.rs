@@ -3,19 +3,19 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-use bearing_dynamics::assembly::loads::RotatingLoad;
 use bearing_dynamics::ch2_housing::bearing::geometry::Material;
 use bearing_dynamics::ch2_housing::bearing::inertia::hollow_cylinder;
+use bearing_dynamics::equilibrium::quasi_static_limit::lowest_frequency;
 use bearing_dynamics::kinematics::strain::von_mises;
+use bearing_dynamics::members::body::RotatingLoad;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Curve, OrbitPlot, orbit};
+use bearing_dynamics::reduction::component_modes::lowest_modes;
+use bearing_dynamics::reduction::fixed_interface_modes::vibrating_housing;
 use bearing_dynamics::solids::bore_equilibrium::BoreState;
 use bearing_dynamics::solids::condensation::geometry_error;
-use bearing_dynamics::solids::fixed_interface_modes::vibrating_housing;
-use bearing_dynamics::solids::reduction::lowest_modes;
 use bearing_dynamics::solids::stress::nodal_stresses;
-use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 
 use crate::bearings::{Hertz, oracle};
 use crate::case::{Case, CaseError, Tier};

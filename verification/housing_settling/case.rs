@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::{INNER, OUTER};
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
-use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::members::body::Drive;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;

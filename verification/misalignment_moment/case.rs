@@ -1,6 +1,7 @@
 //! Moment over tilt of the fixed bearing of 3.4.5, and what was tried on its last row.
 
-use bearing_dynamics::equilibrium::statics::{Condition, StaticSolution, solve};
+use bearing_dynamics::equilibrium::statics::{StaticSolution, solve};
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::output::plots::{Axis, Curve, PolarPlot, Style, XyPlot, polar, xy};
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths};

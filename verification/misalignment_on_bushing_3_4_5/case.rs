@@ -1,14 +1,14 @@
 //! Moment over tilt of the bearing of 3.4.5 with its outer race in a bonded bushing, relaxed.
 
 use bearing_dynamics::assembly::lists::{Assembly, OUTER};
-use bearing_dynamics::assembly::loads::{Drive, Rotation};
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::ChainPull;
 use bearing_dynamics::equilibrium::initial::at_start;
+use bearing_dynamics::members::body::{Drive, Rotation};
 use bearing_dynamics::members::connection::SpringDashpot;
+use bearing_dynamics::members::prony::bushing_spring;
 use bearing_dynamics::mesh::generate::{Bushing, Part};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
-use bearing_dynamics::solids::rubber::prony::bushing_spring;
 use bearing_dynamics::solids::rubber::sleeve::SleeveMotion;
 use std::f64::consts::PI;
 

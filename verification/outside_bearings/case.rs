@@ -6,8 +6,9 @@ use bearing_dynamics::ch2_housing::bearing::hertz::{
     HertzContact, HertzModel, RaceSide, contact, contact_ellipse, contact_from_radii,
 };
 use bearing_dynamics::ch2_housing::bearing::rating::reference_life;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem, solve};
+use bearing_dynamics::equilibrium::statics::{StaticProblem, solve};
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::Condition;
 use nalgebra::Vector3;
 
 use crate::case::{Case, CaseError, Tier};

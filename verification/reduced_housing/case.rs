@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::{Assembly, OUTER};
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::members::body::{Drive, RotatingLoad};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::members::reduced_solid::ReducedSolid;
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
@@ -16,11 +17,11 @@ use bearing_dynamics::motion::reduced_start::{
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::reduction::component_modes::{LEFT_OUT, ReduceOptions, Reduction, reduce};
+use bearing_dynamics::reduction::load_patterns::{LargestLoads, pressed};
 use bearing_dynamics::solids::bore_equilibrium::BoreState;
 use bearing_dynamics::solids::condensation::CondensedBore;
-use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
 use bearing_dynamics::solids::model::SolidModel;
-use bearing_dynamics::solids::reduction::{LEFT_OUT, ReduceOptions, Reduction, reduce};
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

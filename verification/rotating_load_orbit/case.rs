@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use bearing_dynamics::assembly::loads::RotatingLoad;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::RotatingLoad;
 use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, OrbitPlot, Style, XyPlot, orbit, xy};

@@ -1,8 +1,8 @@
 //! The system of 4.3 at rest and at 1000 rpm: a shaft that bends on two bearings in two pillow blocks.
 
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::Place;
+use bearing_dynamics::equilibrium::lists::Place;
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::output::series::Series;
 use bearing_dynamics::solids::condensation::CondensedBore;
 

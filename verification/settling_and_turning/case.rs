@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem};
-use bearing_dynamics::assembly::state::POSITION;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::Drive;
+use bearing_dynamics::members::state::POSITION;
 use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, PolarPlot, Style, XyPlot, polar, xy};

@@ -3,15 +3,15 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-use bearing_dynamics::assembly::state::VELOCITY;
+use bearing_dynamics::equilibrium::quasi_static_limit::lowest_frequency;
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
+use bearing_dynamics::members::state::VELOCITY;
 use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 use bearing_dynamics::output::session::{Motion, Parts, Session};
+use bearing_dynamics::reduction::component_modes::lowest_modes;
+use bearing_dynamics::reduction::fixed_interface_modes::vibrating_housing;
 use bearing_dynamics::solids::condensation::CondensedBore;
-use bearing_dynamics::solids::fixed_interface_modes::vibrating_housing;
-use bearing_dynamics::solids::reduction::lowest_modes;
-use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 
 use crate::case::{Case, CaseError, Tier};
 use crate::check::Check;

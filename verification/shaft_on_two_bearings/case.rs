@@ -1,14 +1,13 @@
 //! Random shafts on two bearings each against a solver that shares nothing with the program.
 
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::{
+use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
+use bearing_dynamics::equilibrium::lists::{
     Loaded, Place, StaticAssembly, StaticBearing, StaticBody,
 };
-use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
-use bearing_dynamics::equilibrium::statics::{
-    AssemblySolution, Condition, StaticOptions, solve_assembly,
-};
+use bearing_dynamics::equilibrium::statics::{AssemblySolution, StaticOptions, solve_assembly};
 use bearing_dynamics::kinematics::{Pose, euler};
+use bearing_dynamics::members::body::Condition;
+use bearing_dynamics::members::mount::Mount;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 

@@ -4,11 +4,11 @@ mod full;
 
 use crate::single_shaft::{Fixed, SingleShaft};
 use bearing_dynamics::members::beam::{Beam, BeamDisc, BeamSegment};
+use bearing_dynamics::members::condensed_shaft::matrices;
+use bearing_dynamics::members::meshed_shaft::ShaftMesh;
 use bearing_dynamics::members::shaft_modes::{AttachedStation, BendingPlane, ShaftShapes};
 use bearing_dynamics::mesh::generate::shaft;
 use bearing_dynamics::mesh::{Order, TetMesh};
-use bearing_dynamics::solids::condensed_shaft::matrices;
-use bearing_dynamics::solids::meshed_shaft::ShaftMesh;
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 

@@ -1,9 +1,9 @@
 //! The whole solid, without reduction: a free shaft's bending, its sag, and its vibration between sections that are held.
 
 use bearing_dynamics::ch4_rotor::section::RotorSection;
+use bearing_dynamics::members::condensed_shaft::section;
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::numeric::profile::Profile;
-use bearing_dynamics::solids::condensed_shaft::section;
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
 use bearing_dynamics::solids::model::{Prescribed, SolidModel};
 use bearing_dynamics::solids::modes::{Mode, ModeOptions, modes};

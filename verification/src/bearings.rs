@@ -8,8 +8,9 @@ use bearing_dynamics::ch2_housing::bearing::geometry::{
     BearingGeometry, ClearanceThrough, Material,
 };
 use bearing_dynamics::ch2_housing::bearing::hertz::{HertzError, HertzModel, RaceSide, contact};
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem};
+use bearing_dynamics::equilibrium::statics::StaticProblem;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::Condition;
 use nalgebra::Vector3;
 
 use crate::oracles::hertz::{self, ball_on_race};

@@ -2,14 +2,15 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use bearing_dynamics::assembly::lists::{Assembly, Body, Mobility, OUTER};
-use bearing_dynamics::assembly::mount::Mount;
+use bearing_dynamics::assembly::lists::{Assembly, OUTER};
 use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::{Elastomer, ElastomerError};
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
 use bearing_dynamics::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
+use bearing_dynamics::members::body::{Body, Mobility};
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::mesh::generate::{Bushing, BushingMesh, Part, bushing};
 use bearing_dynamics::mesh::{Elements, TetMesh};
 use bearing_dynamics::numeric::profile::Profile;

@@ -2,10 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BODY, BodyState, Layout, POSITION};
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::{Drive, Rotation};
+use bearing_dynamics::members::state::{BODY, BodyState, Layout, POSITION};
 use bearing_dynamics::motion::clocked::{self, RunRequest};
 use bearing_dynamics::motion::simulation::{
     Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,

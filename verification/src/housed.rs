@@ -1,23 +1,23 @@
 //! A bearing whose outer race sits in a condensed bore, by itself: one equilibrium, and equilibria along a quasi-static
 //! sequence. The tests of housings use it too.
 
-use bearing_dynamics::assembly::loads::RotatingLoad;
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticSeat};
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
 use bearing_dynamics::ch2_housing::bearing::inertia::Inertia;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticSeat};
+use bearing_dynamics::equilibrium::quasi_static_limit::MovingBody;
 use bearing_dynamics::equilibrium::statics::{
-    AssemblySolution, Condition, StaticProblem, StaticSolution, StaticsError,
+    AssemblySolution, StaticProblem, StaticSolution, StaticsError,
 };
 use bearing_dynamics::equilibrium::warm_started_search::{
     WarmStartedSearch, load_of_balls, unbalanced,
 };
 use bearing_dynamics::kinematics::vec3::{Vec3, add};
+use bearing_dynamics::members::body::{Condition, RotatingLoad};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::bore_equilibrium::{BoreSearch, BoreState, Fit, RaceLoad};
 use bearing_dynamics::solids::condensation::{CondensedBore, placed};
-use bearing_dynamics::vibrations::quasi_static_limit::MovingBody;
 use nalgebra::{DMatrix, Vector3};
 
 /// Bearing and housing in equilibrium.

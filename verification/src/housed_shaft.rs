@@ -1,27 +1,27 @@
 //! From a shipped scene of a shaft in housings, with words changed, to its equilibrium and what a session moves in each of three ways.
 
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::static_lists::StaticAssembly;
 use bearing_dynamics::equilibrium::initial::static_assembly;
+use bearing_dynamics::equilibrium::lists::StaticAssembly;
 use bearing_dynamics::equilibrium::quasi_static_sequence::{QuasiStaticFit, QuasiStaticProblem};
 use bearing_dynamics::equilibrium::statics::{AssemblySolution, StaticOptions, solve_assembly};
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::motion::coupling::{CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::motion::reduced_start::{Housing as Start0, add_housing, put_in_equilibrium};
 use bearing_dynamics::motion::simulation::{RunOptions, Start};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{HousedParts, Parts, RunRequest, SequenceParts};
+use bearing_dynamics::reduction::component_modes::{LEFT_OUT, ReduceOptions, reduce};
+use bearing_dynamics::reduction::load_patterns::{LargestLoads, pressed};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::housing::{HousingSetup, setup};
 use bearing_dynamics::scene::build::shaft::take_shafts;
 use bearing_dynamics::scene::build::solid_mesh::build_housing;
 use bearing_dynamics::scene::resolve::housing_scene::HousedScene;
 use bearing_dynamics::solids::condensation::{CondensedBore, condense};
-use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
-use bearing_dynamics::solids::reduction::{LEFT_OUT, ReduceOptions, reduce};
 
 use crate::case::CaseError;
 use crate::motion;

@@ -3,10 +3,11 @@
 
 use std::f64::consts::TAU;
 
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::assembly::lists::OUTER;
-use bearing_dynamics::assembly::loads::{Drive, DynamicProblem, RotatingLoad};
-use bearing_dynamics::assembly::mount::Mount;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
+use bearing_dynamics::members::body::{Drive, RotatingLoad};
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;

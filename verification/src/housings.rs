@@ -3,11 +3,12 @@
 
 use std::f64::consts::TAU;
 
-use bearing_dynamics::assembly::loads::{DrivenBody, DynamicProblem, Rotation};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bore_contact::{ContactNode, Penalty, contact_nodes};
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem};
+use bearing_dynamics::equilibrium::statics::StaticProblem;
 use bearing_dynamics::kinematics::Pose;
+use bearing_dynamics::members::body::{Condition, DrivenBody, Rotation};
 use bearing_dynamics::mesh::generate::{Housing, HousingMesh, PillowBlock};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::numeric::profile::Profile;

@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use bearing_dynamics::assembly::loads::{Drive, DrivenBody, DynamicProblem, Rotation};
-use bearing_dynamics::assembly::state::{BodyState, POSITION, VELOCITY};
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::frequencies::ratios;
@@ -11,8 +10,9 @@ use bearing_dynamics::ch2_housing::bearing::geometry::Material;
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
 use bearing_dynamics::ch2_housing::bearing::inertia;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
-use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::body::{Condition, Drive, DrivenBody, Rotation};
 use bearing_dynamics::members::rigid_body::tilts_of;
+use bearing_dynamics::members::state::{BodyState, POSITION, VELOCITY};
 use bearing_dynamics::motion::simulation::{RunOptions, Simulation, SimulationError, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::series::Series;

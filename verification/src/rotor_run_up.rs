@@ -1,8 +1,8 @@
 //! The rotor of 4.3.4 run up: by the program from its shipped scene, and by the oracle.
 
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::state::{Ledger, POSITION};
 use bearing_dynamics::members::connection::{Connection, Law, SpringDashpot};
+use bearing_dynamics::members::state::{Ledger, POSITION};
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Simulation, Start, Stepping};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;

@@ -9,14 +9,12 @@ use std::time::Instant;
 
 use crate::cache::Cache;
 use crate::case::{Case, Computation};
-use crate::cases;
 use crate::context::CaseContext;
 use crate::golden::{self, GoldenValue};
 use crate::judge::{self, Verdict};
-use crate::page;
 use crate::published::Published;
-use crate::readme;
 use crate::report::{Cached, CaseReport, CaseStatus, GoldenReport, GoldenStatus};
+use crate::{cases, page, readme};
 
 /// What a case recorded, how it ended and how long it took.
 #[derive(Clone, Debug)]

@@ -4,8 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use bearing_dynamics::ch2_housing::bearing::geometry::ClearanceThrough;
 use bearing_dynamics::ch2_housing::bearing::hertz::HertzError;
-use bearing_dynamics::equilibrium::statics::{Condition, StaticProblem, StaticSolution};
+use bearing_dynamics::equilibrium::statics::{StaticProblem, StaticSolution};
 use bearing_dynamics::kinematics::{Pose, euler};
+use bearing_dynamics::members::body::Condition;
 use nalgebra::Vector3;
 
 use crate::bearings::{self, Hertz, Lengths, known};

@@ -1,19 +1,18 @@
 //! An impact on a bearing in a steel bushing, by explicit steps of both.
 
-use bearing_dynamics::assembly::lists::INNER;
-use bearing_dynamics::assembly::lists::OUTER;
-use bearing_dynamics::assembly::loads::Drive;
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::state::{BODY, BodyState, VELOCITY};
+use bearing_dynamics::assembly::lists::{INNER, OUTER};
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch2_housing::linear_elastic::LinearElastic;
+use bearing_dynamics::members::body::Drive;
+use bearing_dynamics::members::mount::Mount;
+use bearing_dynamics::members::state::{BODY, BodyState, VELOCITY};
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingOptions, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
+use bearing_dynamics::reduction::load_patterns::race_under_load;
 use bearing_dynamics::solids::bore_equilibrium::{BoreSearch, RaceLoad};
-use bearing_dynamics::solids::load_patterns::race_under_load;
 use bearing_dynamics::solids::model::SolidModel;
 
 use crate::bearings::{self, Hertz};

@@ -4,8 +4,7 @@
 use std::f64::consts::TAU;
 
 use bearing_dynamics::assembly::lists::OUTER;
-use bearing_dynamics::assembly::loads::Drive;
-use bearing_dynamics::equilibrium::statics::Condition;
+use bearing_dynamics::members::body::{Condition, Drive};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::motion::coupling::{CoupledMotion, SolidPart};
 use bearing_dynamics::motion::race_in_bore::Seat;
@@ -19,10 +18,9 @@ use crate::check::Check;
 use crate::context::CaseContext;
 use crate::golden::GoldenTolerance;
 use crate::housed::{HousedState, QuasiStaticSequence, history};
-use crate::housing_turn;
 use crate::housings::{self, BORE_RADIUS, assumptions, condensed, fit, mesh, search, solid};
-use crate::motion;
 use crate::solids::largest;
+use crate::{housing_turn, motion};
 
 pub const CASE: Case = Case {
     id: "steel_load_rates_2_4_3",

@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use bearing_dynamics::assembly::loads::Drive;
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
+use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::motion::simulation::Simulation;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};

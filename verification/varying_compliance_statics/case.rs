@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use bearing_dynamics::equilibrium::statics::{Condition, StaticOptions, solve_from};
+use bearing_dynamics::equilibrium::statics::{StaticOptions, solve_from};
+use bearing_dynamics::members::body::Condition;
 use bearing_dynamics::output::plots::{Axis, Curve, Style, XyPlot, xy};
 
 use crate::bearings::{self, DEEP_GROOVE, Hertz, Lengths, known};

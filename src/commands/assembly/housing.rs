@@ -4,19 +4,17 @@ use super::Fallible;
 use crate::commands::memory::within;
 use crate::commands::placed;
 use crate::commands::solid::mesh_notes;
-use bearing_dynamics::assembly::mount::Mount;
-use bearing_dynamics::assembly::plan::Item;
-use bearing_dynamics::assembly::plan::solid;
-use bearing_dynamics::assembly::plan::solid::Method;
 use bearing_dynamics::ch2_housing::bore_contact::Penalty;
 use bearing_dynamics::ch4_rotor::bore_friction::BoreFriction;
 use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticFit;
+use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::mesh::Order;
 use bearing_dynamics::mesh::read::LengthUnit;
 use bearing_dynamics::motion::race_in_bore::Seat;
 use bearing_dynamics::numeric::clock::{rounded, to_digits};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::numeric::sparse::Memory;
+use bearing_dynamics::plan::Item;
 use bearing_dynamics::scene::Document;
 use bearing_dynamics::scene::build::housing::{
     HousingSetup, check_constant, check_supports, setup,
@@ -26,6 +24,8 @@ use bearing_dynamics::scene::resolve::housing_scene::{HousedScene, HousingMethod
 use bearing_dynamics::scene::resolve::solid_scene::{MeshPlace, MeshSource};
 use bearing_dynamics::solids::bore_equilibrium::Axial;
 use bearing_dynamics::solids::condensation::{CondensedBore, Sizes, condense_over, memory, sizes};
+use bearing_dynamics::solids::plan as solid;
+use bearing_dynamics::solids::plan::Method;
 use bearing_dynamics::solids::support::free_motions;
 use bearing_dynamics::solids::tangent::Unknowns;
 use std::fmt::Write;

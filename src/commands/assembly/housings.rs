@@ -3,18 +3,18 @@
 use super::Fallible;
 use super::housing::Housing;
 use super::lists::Lists;
-use bearing_dynamics::assembly::lists::{Assembly, Body};
-use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::assembly::prescribed::conditions;
 use bearing_dynamics::equilibrium::exact_gap_iteration::solve_with_true_distances;
-use bearing_dynamics::equilibrium::initial::{conditions, prescribed_speed, static_assembly};
+use bearing_dynamics::equilibrium::initial::static_assembly;
+use bearing_dynamics::equilibrium::lists::StaticAssembly;
 use bearing_dynamics::equilibrium::quasi_static_sequence::{
     EquilibriumAt, QuasiStaticFit, QuasiStaticProblem,
 };
-use bearing_dynamics::equilibrium::statics::{
-    AssemblySolution, Condition, StaticOptions, solve_assembly,
-};
+use bearing_dynamics::equilibrium::statics::{AssemblySolution, StaticOptions, solve_assembly};
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::kinematics::vec3::Vec3;
+use bearing_dynamics::members::body::{Body, Condition, prescribed_speed};
 use bearing_dynamics::members::flexible_shaft::{ElasticShaft, ShaftLoad};
 use bearing_dynamics::motion::coupling::{CouplingOptions, SolidPart};
 use bearing_dynamics::motion::simulation::{RunOptions, Start};

@@ -3,14 +3,14 @@
 use super::Fallible;
 use super::housing::Housing;
 use super::modes::housing_modes;
+use bearing_dynamics::equilibrium::quasi_static_limit::lowest_frequency;
 use bearing_dynamics::equilibrium::quasi_static_sequence::{EquilibriumAt, QuasiStaticProblem};
 use bearing_dynamics::equilibrium::warm_started_search::WarmStartedSearch;
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::results::quantity;
+use bearing_dynamics::reduction::fixed_interface_modes::vibrating_housing;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::excitations::{Excitation, excitations};
-use bearing_dynamics::solids::fixed_interface_modes::vibrating_housing;
-use bearing_dynamics::vibrations::quasi_static_limit::lowest_frequency;
 use serde_json::{Value, json};
 
 /// Natural modes kept for each housing: four give the lowest frequency of a pillow block to 1e-5.

@@ -14,11 +14,11 @@ mod whirl;
 mod windows;
 
 use super::echo_run;
-use bearing_dynamics::assembly::plan::Item;
-use bearing_dynamics::assembly::plan::motion::race_freedom;
-use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::equilibrium::lists::StaticAssembly;
+use bearing_dynamics::motion::plan::race_freedom;
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::results::RunRecord;
+use bearing_dynamics::plan::Item;
 use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::build::assembly::{
     AssemblyScene, Carrier, PlacedBearing, PlacedHousing,

@@ -13,21 +13,21 @@ use crate::commands::earlier::{Writes, remove_earlier};
 use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, print};
-use bearing_dynamics::assembly::lists::{Assembly, Body};
-use bearing_dynamics::assembly::loads::Rotation;
-use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly, StaticBody};
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::equilibrium::lists::{Place, StaticAssembly, StaticBody};
+use bearing_dynamics::equilibrium::quasi_static_limit::{HousingMass, MovingBody};
 use bearing_dynamics::equilibrium::statics::{AssemblySolution, Determinacy};
+use bearing_dynamics::members::body::{Body, Rotation};
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::natural_modes::{frequency, moves_most, names, write};
 use bearing_dynamics::output::warnings::{lines, solid::of_contact_nodes};
-use bearing_dynamics::scene::build::assembly::AssemblyScene;
-use bearing_dynamics::solids::condensation::CondensedBore;
-use bearing_dynamics::solids::fixed_interface_modes::{
+use bearing_dynamics::reduction::fixed_interface_modes::{
     Natural, natural_modes_of, vibrating_housing,
 };
+use bearing_dynamics::scene::build::assembly::AssemblyScene;
+use bearing_dynamics::solids::condensation::CondensedBore;
 use bearing_dynamics::solids::memory::modes_of_fixed;
 use bearing_dynamics::solids::modes::Mode as NaturalMode;
-use bearing_dynamics::vibrations::quasi_static_limit::{HousingMass, MovingBody};
 use bearing_dynamics::vibrations::rotor::RotorError;
 use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, natural_modes, whirling};
 use serde_json::json;

@@ -6,9 +6,9 @@ use super::housings::{Largest, at_start, condensed, seats};
 use super::lists::Lists;
 use crate::commands::memory::{refuse_beyond, spun};
 use crate::commands::plan_step::note;
-use bearing_dynamics::assembly::lists::{Assembly, Bearing};
-use bearing_dynamics::assembly::plan::counts::Counts;
+use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::kinematics::vec3::{Vec3, dot, norm, sub};
+use bearing_dynamics::members::bearing::Bearing;
 use bearing_dynamics::members::sensor::SensorKind;
 use bearing_dynamics::motion::reduced_start;
 use bearing_dynamics::motion::reduced_start::{add_housing, ball_frequency, put_in_equilibrium};
@@ -16,13 +16,16 @@ use bearing_dynamics::motion::simulation::Start;
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::session::Motion;
 use bearing_dynamics::output::warnings::{Warning, WarningCode};
+use bearing_dynamics::plan::counts::Counts;
+use bearing_dynamics::reduction::component_modes::{
+    CutOff, LEFT_OUT, ReduceOptions, Reduction, reduce,
+};
+use bearing_dynamics::reduction::load_patterns::{LargestLoads, pressed};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::excitations::{Excitation, excitations};
 use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreState, Fit};
 use bearing_dynamics::solids::condensation::CondensedBore;
-use bearing_dynamics::solids::load_patterns::{LargestLoads, pressed};
 use bearing_dynamics::solids::memory;
-use bearing_dynamics::solids::reduction::{CutOff, LEFT_OUT, ReduceOptions, Reduction, reduce};
 use std::error::Error;
 use std::time::Instant;
 

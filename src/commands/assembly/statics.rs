@@ -11,7 +11,7 @@ use crate::commands::echo::{frequencies, frequency_line, hertz, sections};
 use crate::commands::life::Life;
 use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, pictures, print, record, table};
-use bearing_dynamics::assembly::static_lists::StaticAssembly;
+use bearing_dynamics::equilibrium::lists::StaticAssembly;
 use bearing_dynamics::equilibrium::quasi_static_sequence::EquilibriumAt;
 use bearing_dynamics::equilibrium::statics::{StaticProblem, StaticSolution, stiffness_to_ground};
 use bearing_dynamics::kinematics::vec3::Vec3;

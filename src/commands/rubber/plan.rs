@@ -6,13 +6,13 @@ use crate::commands::plan_step::note;
 use crate::commands::solid::mesh_notes;
 use crate::commands::solid::plan::{fields_line, from};
 use crate::commands::{CommandResult, Outcome, memory};
-use bearing_dynamics::assembly::plan::rubber;
-use bearing_dynamics::assembly::plan::rubber::Method;
-use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
 use bearing_dynamics::numeric::clock::{whole_number, whole_steps};
+use bearing_dynamics::plan::{Item, Stage, Subject};
 use bearing_dynamics::scene::resolve::solid_scene::{RubberScene, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solids::memory as needed;
+use bearing_dynamics::solids::rubber::plan as rubber;
+use bearing_dynamics::solids::rubber::plan::Method;
 use bearing_dynamics::solids::rubber::steps::Stepping;
 
 pub fn run(document: &Document, scene: &SolidScene, rubber: &RubberScene) -> CommandResult {

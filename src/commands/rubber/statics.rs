@@ -7,7 +7,6 @@ use crate::commands::memory::refuse_beyond;
 use crate::commands::solid::statics::{WRITTEN, table, write};
 use crate::commands::solid::{print_mesh_notes, record};
 use crate::commands::{CommandResult, Outcome, interruption, placed, print};
-use bearing_dynamics::assembly::plan::counts::Counts;
 use bearing_dynamics::numeric::clock::display_time;
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::fields::rubber_stresses;
@@ -16,6 +15,7 @@ use bearing_dynamics::output::summary::rubber::{
     self as summary, harmonic_section, harmonic_series,
 };
 use bearing_dynamics::output::warnings::{lines, solid::of_rubber};
+use bearing_dynamics::plan::counts::Counts;
 use bearing_dynamics::scene::build::rubber::vibrating;
 use bearing_dynamics::scene::resolve::solid_scene::{Harmonic, RubberScene};
 use bearing_dynamics::scene::{Document, SolidScene};

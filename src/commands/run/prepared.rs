@@ -5,9 +5,7 @@ use crate::commands::assembly::lists::Lists;
 use crate::commands::assembly::shapes::{Shapes, shapes};
 use crate::commands::assembly::{self, housings, plan};
 use crate::commands::{rubber, solid};
-use bearing_dynamics::assembly::channels::ChannelGroup;
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::plan::Stage;
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::TetMesh;
 use bearing_dynamics::motion::integrator_choice::{Choice, choose};
@@ -16,6 +14,8 @@ use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::output::session::{
     Motion, Parts, RubberParts, RunRequest, SequenceParts, Session, SolidParts,
 };
+use bearing_dynamics::plan::Stage;
+use bearing_dynamics::plan::channels::ChannelGroup;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::bushing::{BushingElements, take_bushings};
 use bearing_dynamics::scene::build::cage::{BuiltCage, CageForm};

@@ -7,9 +7,9 @@ pub mod plan;
 pub mod statics;
 
 use super::{placed, print};
-use bearing_dynamics::assembly::plan::Item;
 use bearing_dynamics::mesh::repair::Repaired;
 use bearing_dynamics::output::results::RunRecord;
+use bearing_dynamics::plan::Item;
 use bearing_dynamics::scene::build::solid::{SolidSetup, SolidSetupError, setup};
 use bearing_dynamics::scene::build::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::{Document, SolidScene};

@@ -4,20 +4,19 @@ use super::{Prepared, mesh_notes, prepare};
 use crate::commands::plan::print_plan;
 use crate::commands::plan_step::note;
 use crate::commands::{CommandResult, Outcome, memory, rubber};
-use bearing_dynamics::assembly::plan::solid;
-use bearing_dynamics::assembly::plan::solid::Method;
-use bearing_dynamics::assembly::plan::{Item, Stage, Subject};
 use bearing_dynamics::mesh::{Order, TetMesh};
 use bearing_dynamics::numeric::clock::whole_number;
 use bearing_dynamics::numeric::sparse::Memory;
 use bearing_dynamics::output::fields::size::{fields_size, file_bytes};
+use bearing_dynamics::plan::{Item, Stage, Subject};
 use bearing_dynamics::scene::resolve::solid_scene::{Law, MeshSource, RunSteps, SolidRun};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solids::explicit::{ExplicitMethod, SolidStepping};
-use bearing_dynamics::solids::memory as needed;
 use bearing_dynamics::solids::model::SolidModel;
+use bearing_dynamics::solids::plan::Method;
 use bearing_dynamics::solids::step_limit::step_limit;
 use bearing_dynamics::solids::tangent::{MassMatrix, Unknowns};
+use bearing_dynamics::solids::{memory as needed, plan as solid};
 
 pub fn run(document: &Document, scene: &SolidScene) -> CommandResult {
     if let Law::Elastomer(rubber) = &scene.law {

@@ -5,7 +5,7 @@ use super::housings::{self, Kept};
 use crate::commands::assembly::housings::{Equilibrium, equilibrium, grown};
 use crate::commands::assembly::lists::Lists;
 use crate::commands::warnings::of_equilibrium;
-use bearing_dynamics::assembly::static_lists::{Place, StaticAssembly};
+use bearing_dynamics::equilibrium::lists::{Place, StaticAssembly};
 use bearing_dynamics::equilibrium::statics::{
     AssemblySolution, BallState, COORDINATE_NAMES, Determinacy, StaticSolution,
 };

@@ -4,10 +4,9 @@ use crate::output::compare::channels::{Content, Leaf, LeafValue};
 use crate::output::compare::tolerance::{
     RequestedTolerance, Tolerance, ToleranceClass, ToleranceError, Tolerances, turn,
 };
-use crate::output::compare::unloaded;
 use crate::output::compare::{
     ChannelResult, CompareError, Comparison, Divergence, DivergenceKind, Options, Worst,
-    is_about_steps, is_default_of_key, is_ignored_by_name,
+    is_about_steps, is_default_of_key, is_ignored_by_name, unloaded,
 };
 use crate::output::series::Series;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};

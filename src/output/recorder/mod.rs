@@ -9,11 +9,11 @@ mod solid;
 
 pub use solid::{length, mean, probe_columns, sum};
 
-use crate::assembly::channels::ChannelGroup;
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::counts::Counts;
 use crate::output::series::{Column, Series, SeriesError};
 use crate::output::session::{Parts, SessionError};
+use crate::plan::channels::ChannelGroup;
+use crate::plan::counts::Counts;
 use crate::scene::build::solid::{NamedNodes, Support};
 use bearing::BearingColumns;
 use ndarray::Array2;

@@ -2,8 +2,8 @@
 
 use super::Recorder;
 use super::seat::{SeatRow, prefix, seat_columns};
-use crate::assembly::mount::Mount;
 use crate::equilibrium::quasi_static_sequence::{QuasiStaticProblem, QuasiStaticSequence};
+use crate::members::mount::Mount;
 use crate::output::series::Column;
 
 /// Columns of bearings, other bodies and housings, with or without the ball loads.

@@ -11,7 +11,6 @@ pub use motion::{Checkpoint, HousedParts, Motion, Parts, SequenceParts, SolidPar
 pub use rubber::{MovingRubber, RubberParts};
 pub use size::{TableSize, table_size};
 
-use crate::assembly::plan::counts::{Counts, StageCounts};
 use crate::equilibrium::quasi_static_sequence::QuasiStaticError;
 use crate::kinematics::vec3::Vec3;
 use crate::motion::clocked;
@@ -21,6 +20,7 @@ use crate::numeric::clock::{Clock, rounded};
 use crate::output::recorder::Recorder;
 use crate::output::series::{Series, SeriesError};
 use crate::output::table::readable;
+use crate::plan::counts::{Counts, StageCounts};
 use crate::solids::bore_equilibrium::BoreError;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::SolidError;

@@ -3,9 +3,8 @@
 
 use super::SessionError;
 use super::rubber::{MovingRubber, RubberParts};
+use crate::assembly::bearing_alone::DynamicProblem;
 use crate::assembly::lists::Assembly;
-use crate::assembly::loads::DynamicProblem;
-use crate::assembly::plan::counts::{Counts, StageCounts};
 use crate::equilibrium::quasi_static_sequence::{
     QuasiStaticCheckpoint, QuasiStaticProblem, QuasiStaticSequence,
 };
@@ -18,6 +17,7 @@ use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, Sol
 use crate::motion::race_in_bore::Seat;
 use crate::motion::simulation::{RunOptions, Simulation};
 use crate::numeric::clock::{Clock, whole_number};
+use crate::plan::counts::{Counts, StageCounts};
 use crate::scene::build::solid::SolidSetup;
 use crate::solids::checkpoint::SolidCheckpoint;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};

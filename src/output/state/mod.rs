@@ -13,10 +13,7 @@ pub mod rubber_entry;
 
 pub use crate::output::journal::{SERIES, STATE, Stopped};
 
-use crate::assembly::channels::ChannelGroup;
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::counts::StageCounts;
-use crate::assembly::plan::{Stage, Subject};
 use crate::equilibrium::quasi_static_sequence::QuasiStaticFit;
 use crate::motion::coupled_checkpoint::SteppedCheckpoint;
 use crate::motion::simulation::Stepping;
@@ -28,6 +25,9 @@ use crate::output::series::{Series, SeriesError};
 use crate::output::session::{
     Checkpoint, LedgerWatch, Parts, RunRequest, Session, SessionError, Sound,
 };
+use crate::plan::channels::ChannelGroup;
+use crate::plan::counts::StageCounts;
+use crate::plan::{Stage, Subject};
 use crate::solids::model::SolidProblem;
 use arrays::{remove_arrays, write_arrays};
 use bearing_entry::BearingEntry;

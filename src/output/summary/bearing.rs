@@ -1,10 +1,10 @@
 //! Summary of bearings in a transient run: time steps, largest loads, speeds.
 
 use super::{Part, RunReport};
-use crate::assembly::lists::{BallMeeting, Bearing};
 use crate::ch2_housing::bearing::ball_contact::peak_pressure;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::contact_ellipse;
+use crate::members::bearing::{BallMeeting, Bearing};
 use crate::motion::extremes::{Extreme, Extremes};
 use crate::motion::simulation::{Simulation, Stepping};
 use crate::output::results::{ResultsError, quantity};

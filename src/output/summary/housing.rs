@@ -7,11 +7,11 @@ use crate::motion::coupling::CoupledMotion;
 use crate::output::recorder::seat::{SeatRow, prefix};
 use crate::output::results::quantity;
 use crate::output::session::Motion;
+use crate::reduction::component_modes::CutOff;
 use crate::scene::build::excitations::Excitation;
 use crate::scene::build::housing::HousingSetup;
 use crate::solids::bore_equilibrium::{BoreState, POSE_NAMES};
 use crate::solids::condensation::{CondensedBore, geometry_error};
-use crate::solids::reduction::CutOff;
 use serde_json::{Map, Value, json};
 
 /// Note on the largest pressure of bore nodes. It differed by 24 % between two meshes of housings of 2.4.2 whose

@@ -1,7 +1,6 @@
 //! Summary of a solid: mesh, statics, modes and time steps.
 
 use super::{PEAKS, Part, RunReport};
-use crate::assembly::plan::counts::Counts;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::quality::{Quality, Worst};
 use crate::mesh::{Order, TetMesh};
@@ -10,6 +9,7 @@ use crate::output::recorder::{length, mean, probe_columns, sum};
 use crate::output::results::{ResultsError, RunRecord, insert_record, quantity};
 use crate::output::series::{Series, SeriesError};
 use crate::output::spectrum::{LEAKAGE, Spectrum, WINDOW, peaks};
+use crate::plan::counts::Counts;
 use crate::scene::build::solid::{NamedNodes, SolidSetup, Support};
 use crate::scene::build::solid_mesh::BuiltMesh;
 use crate::solids::energy::strain_energy;

@@ -1,14 +1,14 @@
 //! A resolved scene of bearings, rigid bodies and springs, and the lists of the solver.
 
-use crate::assembly::lists::{Assembly, Body, CAGE, GROUND, INNER, Mobility, OUTER};
-use crate::assembly::loads::{Drive, DrivenBody, RotatingLoad, Rotation};
-use crate::assembly::mount::Mount;
-use crate::assembly::static_lists::StaticAssembly;
+use crate::assembly::lists::{Assembly, CAGE, INNER, OUTER};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::elastomer::Elastomer;
+use crate::equilibrium::lists::StaticAssembly;
 use crate::members::beam::Beam;
+use crate::members::body::{Body, Drive, DrivenBody, GROUND, Mobility, RotatingLoad, Rotation};
 use crate::members::connection::{Connection, CrossCoupling, Law, MaxwellElement, SpringDashpot};
 use crate::members::flexible_shaft::{ElasticShaft, ShaftLoad, Unbalance};
+use crate::members::mount::Mount;
 use crate::members::shaft_modes::{FreeShaftError, Kept, RigidPart, free_shaft};
 use crate::members::unbalance::least_inertia;
 use crate::mesh::generate::{Bushing, BushingMesh};

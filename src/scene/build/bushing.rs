@@ -1,7 +1,6 @@
 //! From bushings of a scene in elements to these elements between their bodies.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::rubber::Bonded;
 use crate::members::connection::Connection;
 use crate::mesh::generate::{BushingMesh, Part, bushing};
 use crate::mesh::{Elements, TetMesh};
@@ -14,6 +13,7 @@ use crate::solids::model::Prescribed;
 use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::explicit::RubberBody;
 use crate::solids::rubber::model::{RubberModel, RubberProblem};
+use crate::solids::rubber::plan::Bonded;
 use crate::solids::rubber::tet_forces::MeanStress;
 use thiserror::Error;
 

@@ -1,11 +1,12 @@
 //! Cages that touch by the nodes of their mesh: the mesh, its contact nodes, and its modes in a floating frame or its
 //! elements.
 
-use crate::assembly::lists::{Assembly, Mobility};
+use crate::assembly::lists::Assembly;
 use crate::ch2_housing::bearing::cage::{CageContacts, Guidance};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
 use crate::kinematics::vec3::{Vec3, add_scaled, dot, norm, scale, sub};
+use crate::members::body::Mobility;
 use crate::members::cage_nodes::{CageNodes, NodeGroup, PocketNodes, SECTORS, azimuth};
 use crate::members::floating_solid::{FloatingSolid, RadiusGauge};
 use crate::mesh::TetMesh;
@@ -14,8 +15,8 @@ use crate::mesh::measure::{Share, tributary_areas};
 use crate::mesh::tet_mesh::Face;
 use crate::motion::coupling::SolidPart;
 use crate::motion::explicit_cage::CagePart;
+use crate::reduction::floating::{FloatingReduction, Patch, reduce_floating};
 use crate::scene::resolve::resolved::{CageInRun, CageMethod, Dynamics, FlexibleCage};
-use crate::solids::floating_reduction::{FloatingReduction, Patch, reduce_floating};
 use crate::solids::model::{SolidError, SolidModel, SolidProblem};
 use crate::solids::modes::ModeError;
 use std::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! Excitations of bearings, bodies and housings, and their frequencies: a quasi-static sequence must be slow compared
 //! with natural frequencies.
 
-use crate::assembly::loads::{Drive, DrivenBody, RotatingLoad, Rotation};
+use crate::members::body::{Drive, DrivenBody, RotatingLoad, Rotation};
 use crate::numeric::profile::Profile;
 use crate::scene::build::assembly::{AssemblyScene, Carrier, PlacedBearing};
 use crate::scene::build::statics::kinematic_ratios;

@@ -1,9 +1,10 @@
 //! From a resolved scene to its bearing in motion.
 
-use crate::assembly::loads::{DrivenBody, DynamicProblem};
+use crate::assembly::bearing_alone::DynamicProblem;
 use crate::ch2_housing::bearing::ball_contact::{BallContactLaw, equal_spheres};
 use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact, effective_modulus};
 use crate::ch2_housing::bearing::inertia;
+use crate::members::body::DrivenBody;
 use crate::members::shaft_modes::FreeShaftError;
 use crate::scene::resolve::resolved::{CageInRun, RunSettings, Scene};
 use thiserror::Error;

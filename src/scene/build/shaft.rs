@@ -1,19 +1,19 @@
 //! Shafts of a scene in elements: from bodies to solids with their attachments.
 
-use crate::assembly::lists::{Assembly, Body, INNER, Mobility};
-use crate::assembly::loads::{Drive, DrivenBody, Rotation};
-use crate::assembly::mount::Mount;
+use crate::assembly::lists::{Assembly, INNER};
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::ch4_rotor::section::RotorSection;
 use crate::kinematics::vec3::Vec3;
 use crate::members::beam::{BeamDisc, BeamError};
+use crate::members::body::{Body, Drive, DrivenBody, Mobility, Rotation};
+use crate::members::condensed_shaft::{SolidShaftError, section};
 use crate::members::connection::SpringDashpot;
+use crate::members::mount::Mount;
 use crate::mesh::{Order, TetMesh};
 use crate::motion::coupling::SolidPart;
 use crate::motion::explicit_shaft::{Joint, SectionUnbalance, ShaftPart};
 use crate::numeric::profile::Profile;
 use crate::scene::build::assembly::{AssemblyScene, Carrier, RaceJoint, SceneBeam, SceneBody};
-use crate::solids::condensed_shaft::{SolidShaftError, section};
 use crate::solids::model::{Load, SolidError, SolidModel, SolidProblem};
 use thiserror::Error;
 

@@ -1,10 +1,10 @@
 //! From a resolved scene to its static problem.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::static_lists::StaticAssembly;
 use crate::ch2_housing::bearing::frequencies;
 use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact};
 use crate::equilibrium::initial::static_assembly;
+use crate::equilibrium::lists::StaticAssembly;
 use crate::equilibrium::statics::StaticProblem;
 use crate::kinematics::{Pose, euler};
 use crate::scene::build::assembly::AssemblyScene;

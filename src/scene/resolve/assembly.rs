@@ -1,7 +1,7 @@
 //! From named tables to bearings on bodies: carriers and connections.
 
-use crate::assembly::loads::DrivenBody;
 use crate::ch2_housing::bearing::inertia::Inertia;
+use crate::members::body::DrivenBody;
 use crate::scene::build::assembly::{
     AssemblyScene, Carrier, NO_INERTIA, PlacedBearing, PlacedHousing, SceneBody, Spring, SpringAt,
     SpringEnd,

@@ -1,15 +1,14 @@
 //! From the given keys to the resolved scene: defaults, and checks between keys.
 
-use crate::assembly::loads::Drive;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, BearingKind, Material};
 use crate::ch2_housing::bearing::hertz::HertzModel;
 use crate::ch2_housing::bearing::rating::LARGEST_CONTACT_ANGLE;
-use crate::equilibrium::statics::{COORDINATE_NAMES, Condition};
+use crate::equilibrium::statics::COORDINATE_NAMES;
+use crate::members::body::{Condition, Drive};
 use crate::numeric::profile::Profile;
 use crate::scene::error::{Problem, SceneError};
-use crate::scene::resolve::profile;
 use crate::scene::resolve::resolved::{DefaultUsed, Plot, RunPlot, Scene};
-use crate::scene::resolve::{cage, dynamics, geometry, solid};
+use crate::scene::resolve::{cage, dynamics, geometry, profile, solid};
 use crate::scene::tables::keys;
 use crate::scene::tables::keys::{DEFAULT_SETS, DEFAULTS, Kind, Need};
 use crate::scene::text::document::Document;

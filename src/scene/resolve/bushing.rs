@@ -2,13 +2,13 @@
 
 use crate::ch2_housing::elastomer::eight_chain::ChainPull;
 use crate::members::connection::SpringDashpot;
+use crate::members::prony::{BushingSpring, bushing_spring};
 use crate::mesh::generate::{Bushing, BushingMesh, Part, bushing as mesh_of};
 use crate::scene::build::assembly::{BushingInElements, BushingOfSpring, BushingStepping};
 use crate::scene::error::SceneError;
 use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::contact::refuse_without_effect_on;
 use crate::scene::resolve::rubber::rubber;
-use crate::solids::rubber::prony::{BushingSpring, bushing_spring};
 use std::f64::consts::TAU;
 use std::sync::{Mutex, PoisonError};
 

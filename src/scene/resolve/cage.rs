@@ -1,6 +1,6 @@
 //! The cage: its sizes, and its rigid body in a run.
 
-use crate::assembly::loads::CageBody;
+use crate::assembly::bearing_alone::CageBody;
 use crate::ch2_housing::bearing::cage::{CageContacts, CageForce, Guidance, Pocket};
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};

@@ -1,13 +1,13 @@
 //! Part of a scene for runs: bodies of the races, rotating loads, steps.
 
-use crate::assembly::channels::ChannelGroup;
-use crate::assembly::lists::gap_in_pockets;
-use crate::assembly::loads::{Drive, DrivenBody, RotatingLoad, Rotation};
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, Material};
 use crate::ch2_housing::bearing::inertia::{Inertia, grooved_ring};
 use crate::equilibrium::statics::COORDINATE_NAMES;
+use crate::members::bearing::gap_in_pockets;
+use crate::members::body::{Drive, DrivenBody, RotatingLoad, Rotation};
 use crate::motion::simulation::{Integrator, RunOptions, Start, Stepping};
 use crate::numeric::profile::Profile;
+use crate::plan::channels::ChannelGroup;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::resolved::{

@@ -1,12 +1,12 @@
 //! From the given keys to a bearing in a housing: defaults, and checks between keys.
 
-use crate::assembly::channels::ChannelGroup;
-use crate::assembly::loads::{Drive, DrivenBody, Rotation};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::ch4_rotor::bore_friction::{BoreFriction, COEFFICIENT, STRETCH};
 use crate::equilibrium::statics::COORDINATE_NAMES;
+use crate::members::body::{Drive, DrivenBody, Rotation};
 use crate::motion::simulation::Start;
 use crate::numeric::profile::Profile;
+use crate::plan::channels::ChannelGroup;
 use crate::scene::build::assembly::PlacedHousing;
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::{Reader, resolve_bearing, text};

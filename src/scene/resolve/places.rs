@@ -1,6 +1,6 @@
 //! Checks of the positions of bearings.
 
-use crate::assembly::loads::Drive;
+use crate::members::body::Drive;
 use crate::motion::validity::race_limit;
 use crate::numeric::clock::display_time;
 use crate::scene::build::assembly::{Carrier, PlacedBearing, SceneBody, Spring, SpringAt};

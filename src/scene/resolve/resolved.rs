@@ -1,7 +1,6 @@
 //! A resolved scene: SI units, validated, with every default named.
 
-use crate::assembly::channels::ChannelGroup;
-use crate::assembly::loads::{CageBody, DrivenBody, RotatingLoad};
+use crate::assembly::bearing_alone::CageBody;
 use crate::ch2_housing::bearing::cage::Guidance;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::geometry::{BearingGeometry, ClearanceThrough, Material};
@@ -9,9 +8,10 @@ use crate::ch2_housing::bearing::hertz::HertzModel;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::ch5_cage::raceway_profile::RacewayProfile;
-use crate::equilibrium::statics::Condition;
+use crate::members::body::{Condition, DrivenBody, RotatingLoad};
 use crate::mesh;
 use crate::motion::simulation::RunOptions;
+use crate::plan::channels::ChannelGroup;
 pub use crate::scene::text::document::Assumption;
 use crate::scene::text::sweep::SweepAxis;
 

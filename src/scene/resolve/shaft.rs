@@ -2,6 +2,7 @@
 
 use crate::ch4_rotor::disc::Inertia as DiscInertia;
 use crate::members::beam::{Beam, BeamDisc, BeamSegment};
+use crate::members::meshed_shaft::ShaftMesh;
 use crate::members::shaft_modes::Kept;
 use crate::mesh::Order;
 use crate::numeric::profile::Profile;
@@ -15,7 +16,6 @@ use crate::scene::resolve::solid::{item_number, item_profile, item_text, missing
 use crate::scene::text::document::Document;
 use crate::scene::text::items::ItemRef;
 use crate::scene::text::scopes::unfit;
-use crate::solids::meshed_shaft::ShaftMesh;
 use std::f64::consts::TAU;
 
 const TABLE: &str = "body.beam";

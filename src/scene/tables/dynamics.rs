@@ -1,6 +1,6 @@
 //! Rows of the key table for runs: inertias, rotation, foundation, cage, traction, integration.
 
-use crate::assembly::channels::ChannelGroup;
+use crate::plan::channels::ChannelGroup;
 use crate::scene::tables::bearing::{
     DENSITY, DENSITY_HINT, DISPLACEMENT, FORCE, LOAD_HINT, MODULUS, MODULUS_HINT, MOMENT, POISSON,
     POISSON_HINT, RADIUS, RADIUS_HINT, SPIN, STEEL_DENSITY, TILT, TILT_HINT, quantity,

@@ -3,9 +3,8 @@
 //! The reader, the refusal of unknown keys, `docs/scene.md` and the JSON Schema follow this table.
 
 use crate::scene::tables::{assembly, bearing, dynamics, housing, sensor, shaft, solid};
-use crate::scene::text::units::Dimension;
 use crate::scene::text::units::Dimension::*;
-use crate::scene::text::units::parse_quantity;
+use crate::scene::text::units::{Dimension, parse_quantity};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 

@@ -6,14 +6,11 @@ use crate::scene::tables::keys;
 use crate::scene::tables::keys::{KEYS, Key, Leads};
 use crate::scene::text::base::{BASE, WITHOUT};
 use crate::scene::text::items::Item;
-use crate::scene::text::source;
 use crate::scene::text::source::{Format, Source};
-use crate::scene::text::sweep;
 use crate::scene::text::sweep::SweepAxis;
-use crate::scene::text::tree;
 use crate::scene::text::tree::{Entry, Node, Value};
-use crate::scene::text::value;
 use crate::scene::text::value::{Checked, ValueError};
+use crate::scene::text::{source, sweep, tree, value};
 use std::sync::Arc;
 
 /// A named assumption for data that the source does not state.

@@ -11,7 +11,7 @@ pub mod measures;
 pub mod model;
 pub mod newton;
 pub mod path_following;
-pub mod prony;
+pub mod plan;
 pub mod relaxed;
 pub mod sleeve;
 pub mod steps;

@@ -2,13 +2,13 @@
 //! nothing inside anything, or ends with an error that says what has happened.
 
 use crate::dynamics::Noise;
-use bearing_dynamics::assembly::channels::ChannelGroup;
-use bearing_dynamics::assembly::state::POSITION;
 use bearing_dynamics::kinematics::vec3::{norm, sub};
 use bearing_dynamics::members::ball_set::neighbours;
+use bearing_dynamics::members::bearing::HERTZ_SCALE;
+use bearing_dynamics::members::state::POSITION;
 use bearing_dynamics::motion::simulation::{Simulation, SimulationError};
-use bearing_dynamics::motion::validity::HERTZ_SCALE;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
+use bearing_dynamics::plan::channels::ChannelGroup;
 use bearing_dynamics::scene;
 use bearing_dynamics::scene::Format;
 use bearing_dynamics::scene::build::motion::{dynamic_problem, run_options};

@@ -6,7 +6,6 @@
 use super::*;
 use crate::common::table_4_1;
 use bearing_dynamics::assembly::lists::CAGE;
-use bearing_dynamics::assembly::state::LANES;
 use bearing_dynamics::ch2_housing::bearing::cage::{
     CageContact, CageForce, cage_energy, cage_load, cage_stiffness,
 };
@@ -14,6 +13,7 @@ use bearing_dynamics::ch2_housing::bearing::slices::{
     Patch, Slices, Sliding, integrate, integrate_slope,
 };
 use bearing_dynamics::ch2_housing::bearing::traction::ExponentialCurve;
+use bearing_dynamics::members::state::LANES;
 
 /// What one contact between a ball and a race is made of: δ̇, slip along t and s, spin about n.
 fn motion_of(point: &Point, pair: usize) -> [f64; 4] {
@@ -224,7 +224,7 @@ fn entries_of_race_contacts_in_every_configuration() {
             };
             // Hardly: what closes at 1 cm/s would turn with the normal, which is left out.
             let state = shaken(&problem, 1e-5, &mut Noise(index as u64));
-            let turned = |body: &mut bearing_dynamics::assembly::loads::DrivenBody| {
+            let turned = |body: &mut bearing_dynamics::members::body::DrivenBody| {
                 body.rotation = Rotation::Torque(Profile::ZERO);
             };
             turned(&mut problem.inner);

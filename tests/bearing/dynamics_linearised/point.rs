@@ -3,11 +3,11 @@
 use crate::dynamics;
 
 use bearing_dynamics::assembly::lists::Assembly;
-use bearing_dynamics::assembly::state::{
-    Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
-};
 use bearing_dynamics::kinematics::vec3::{Vec3, add, cross, dot, scale};
 use bearing_dynamics::members::contacts::{Kernel, Want};
+use bearing_dynamics::members::state::{
+    Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
+};
 use bearing_dynamics::motion::block_arrow::BlockArrowMatrix;
 use bearing_dynamics::motion::linearised::{Hub, Linearised};
 use bearing_dynamics::motion::system::System;

@@ -6,8 +6,7 @@ use std::fmt::{Result, Write};
 use crate::index::{ChapterEntries, Entry, Role};
 use crate::judge::{CheckReport, Status};
 use crate::report::html::{check_anchor, chip, escape, explanation, nowrap, number, prose};
-use crate::report::totals;
-use crate::report::{CaseReport, CaseStatus, Report, format};
+use crate::report::{CaseReport, CaseStatus, Report, format, totals};
 
 /// The verdict in sentences, and the counts.
 pub fn write_totals(out: &mut String, report: &Report, source: &[ChapterEntries]) -> Result {

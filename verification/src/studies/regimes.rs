@@ -4,11 +4,11 @@
 //! the other way round. Where impacts of a cage amplify small differences, the error of one run is random: there it is
 //! the median over runs under loads that differ by some permille, each with its own references.
 
-use bearing_dynamics::assembly::channels::ChannelGroup;
-use bearing_dynamics::assembly::loads::DynamicProblem;
+use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
 use bearing_dynamics::motion::integrator_choice::choose;
 use bearing_dynamics::motion::simulation::{Integrator, RunOptions, Stepping};
 use bearing_dynamics::output::session::{RunRequest, Session, Status};
+use bearing_dynamics::plan::channels::ChannelGroup;
 use bearing_dynamics::scene;
 use bearing_dynamics::scene::Format;
 use bearing_dynamics::scene::build::motion::{dynamic_problem, run_options};

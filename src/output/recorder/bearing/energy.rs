@@ -1,9 +1,10 @@
 //! Columns of the energies and works of a multibody simulation.
 
-use crate::assembly::lists::{Assembly, BallMeeting, Bearing};
-use crate::assembly::state::Ledger;
+use crate::assembly::lists::Assembly;
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::TractionLaw;
+use crate::members::bearing::{BallMeeting, Bearing};
+use crate::members::state::Ledger;
 use crate::motion::simulation::Snapshot;
 
 /// Terms of the energy balance that a problem can have.

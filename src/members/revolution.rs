@@ -2,9 +2,9 @@
 
 use crate::elements::{tet4::Tet4, tet10};
 use crate::kinematics::vec3::{Vec3, cross, sub};
+use crate::members::condensed_shaft::SolidShaftError;
+use crate::members::free_modes::lowest;
 use crate::mesh::tet_mesh::Elements;
-use crate::solids::condensed_shaft::SolidShaftError;
-use crate::solids::free_modes::lowest;
 use crate::solids::model::{SolidProblem, corners};
 use nalgebra::{DMatrix, DVector};
 

@@ -4,15 +4,10 @@
 //! that say *does* and nothing else; `bearing plan` and every summary print the same list. Code that does a stage's
 //! work counts it ([`counts`]), and tests compare the counts with the items.
 
+pub mod channels;
 pub mod counts;
-pub mod motion;
-pub mod rubber;
-mod shaft;
-pub mod solid;
-pub mod statics;
-pub mod steps;
 
-use crate::assembly::channels::ChannelGroup;
+use crate::plan::channels::ChannelGroup;
 use std::fmt;
 
 /// A stage of a solution.
@@ -329,4 +324,10 @@ pub fn counted(items: &[Item], ran: &counts::StageCounts) -> Vec<Counted> {
         ran,
     };
     items.iter().map(of).chain(unplanned.map(without)).collect()
+}
+
+/// Item of a scene without flexible solids.
+pub fn no_solids() -> Item {
+    let why = "the scene has no solid: no element stage";
+    Item::skips(Stage::FlexibleBodies, Subject::Whole, why)
 }

@@ -5,7 +5,7 @@
 //! curvature of s times g. A section has the position of
 //! [`Section::place`](crate::members::flexible_shaft::Section::place) in motion.
 
-use crate::assembly::static_lists::{Place, StaticSection, StaticShaft};
+use crate::equilibrium::lists::{Place, StaticSection, StaticShaft};
 use crate::equilibrium::model::{Evaluation, Five, Model};
 use crate::kinematics::euler::quaternion;
 use crate::members::race_position::InnerRacePosition;

@@ -15,15 +15,15 @@ use crate::ch4_rotor::beam::{NODES, shortening};
 use crate::ch4_rotor::section::RotorSection;
 use crate::kinematics::vec3::{Vec3, dot, sub};
 use crate::members::beam::{BeamMatrices, PlaneMatrices};
+use crate::members::revolution::{
+    AXES, CENTRED, NONE, centre_of_round, momenta, refuse_unlike, rigid,
+};
 use crate::mesh::MeshError;
 use crate::mesh::tet_mesh::{Face, TetMesh};
 use crate::mesh::vector_area::vector_areas;
 use crate::numeric::profile::Profile;
 use crate::numeric::sparse::{Factor, FactorError};
 use crate::solids::model::{Prescribed, SolidError, SolidModel, SolidProblem};
-use crate::solids::revolution::{
-    AXES, CENTRED, NONE, centre_of_round, momenta, refuse_unlike, rigid,
-};
 use crate::solids::tangent::{PRESCRIBED, Unknowns, pattern, stiffness};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;

@@ -1,18 +1,17 @@
 //! Rates of one body of an assembly under the sum of its loads.
 
-use crate::assembly::lists::{Body, Mobility};
-use crate::assembly::loads::Rotation;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::plan::steps::BodySteps;
-use crate::assembly::state::{
-    BodyState, LEDGER, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
-};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, scale};
+use crate::members::body::{Body, Mobility, Rotation};
 use crate::members::rigid_body;
 use crate::members::rigid_body::BodyKinematics;
+use crate::members::state::{
+    BodyState, LEDGER, Ledger, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate,
+};
+use crate::members::steps::BodySteps;
 use crate::members::unbalance::{bent_of, directions, turning_momentum};
 use crate::motion::system::System;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 
 impl System {
     /// Rates of one body under the sum of its loads.
@@ -69,7 +68,7 @@ impl System {
                 }
                 let rest = steps.foundation.then_some(&body.rest);
                 if steps.unbalance_coupled {
-                    let bent = bent_of(&self.assembly, &self.shafts, index, state);
+                    let bent = bent_of(&self.assembly.shafts, &self.shafts, index, state);
                     let pushes = match bent {
                         Some((at, (shaft, _))) => {
                             &mut rates[at + shaft.amplitudes()..at + shaft.entries()]

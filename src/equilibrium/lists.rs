@@ -1,14 +1,14 @@
 //! The lists of an equilibrium: fixed or loaded bodies, and the bearings between them.
 
-use crate::assembly::mount::Mount;
 use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::hertz::HertzContact;
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::equilibrium::start::ball_contacts;
-use crate::equilibrium::statics::Condition;
 use crate::kinematics::Pose;
+use crate::members::body::Condition;
 use crate::members::connection::Connection;
 use crate::members::flexible_shaft::Section;
+use crate::members::mount::Mount;
 use crate::members::shaft_modes::ShaftShapes;
 use crate::members::static_ball::BallContacts;
 use crate::solids::bore_equilibrium::Fit;

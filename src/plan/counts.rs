@@ -1,7 +1,7 @@
 //! Number of runs of each stage, counted by the code that does its work: once an evaluation and stage, never once a
 //! contact.
 
-use crate::assembly::plan::{Stage, Subject};
+use crate::plan::{Stage, Subject};
 
 /// Counts of one subject's stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,10 +3,10 @@
 use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::ch4_rotor::beam::NODES;
 use crate::members::beam::{Beam, BeamError, BeamMatrices, BeamSegment};
+use crate::members::condensed_shaft;
+use crate::members::condensed_shaft::SolidShaftError;
 use crate::mesh::generate::{ShaftStep, stepped_shaft, uniform};
 use crate::mesh::{Order, TetMesh};
-use crate::solids::condensed_shaft;
-use crate::solids::condensed_shaft::SolidShaftError;
 use crate::solids::model::{DampedMotion, SolidProblem};
 
 /// Mesh parameters of a shaft.

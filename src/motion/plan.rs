@@ -1,19 +1,20 @@
 //! Plan items of a motion: evaluation of the forces, start, steps, records.
 
-use crate::assembly::channels::ChannelGroup;
-use crate::assembly::lists::{Assembly, BallMeeting, Bearing, Body, GROUND, Mobility};
-use crate::assembly::loads::{Drive, DrivenBody, Rotation};
-use crate::assembly::plan::shaft::bending;
-use crate::assembly::plan::{Item, Stage, Subject};
+use crate::assembly::lists::Assembly;
 use crate::ch2_housing::bearing::cage::{Guidance, Pocket};
 use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::TractionLaw;
 use crate::ch4_rotor::bore_friction::BoreFriction;
 use crate::ch5_cage::raceway_profile::RacewayProfile;
 use crate::members::ball_set::neighbours;
+use crate::members::bearing::{BallMeeting, Bearing};
+use crate::members::body::{Body, Drive, DrivenBody, GROUND, Mobility, Rotation};
 use crate::members::dent_table::Fineness;
+use crate::motion::plan_shaft::bending;
 use crate::motion::simulation::{Integrator, RunOptions, Start, Stepping};
 use crate::numeric::clock::rounded;
+use crate::plan::channels::ChannelGroup;
+use crate::plan::{Item, Stage, Subject, no_solids};
 
 /// A run of an assembly.
 #[derive(Clone, Debug)]
@@ -43,12 +44,6 @@ pub fn items(run: Planned) -> Vec<Item> {
         items.push(Item::does(Stage::Sensors, Subject::Whole, why));
     }
     items
-}
-
-/// Item of a scene without flexible solids.
-pub fn no_solids() -> Item {
-    let why = "the scene has no solid: no element stage";
-    Item::skips(Stage::FlexibleBodies, Subject::Whole, why)
 }
 
 /// Items of one evaluation of the forces, in the order of the work.

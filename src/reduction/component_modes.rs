@@ -8,22 +8,22 @@
 //! diagonal, without coupled masses, and statically exact for every f_j. Interface modes with fixed-interface modes
 //! (Craig and Bampton) span the same space, and need an interface of few coordinates first.
 //!
-//! Patterns are loads of a race on its bore in all directions ([`crate::solids::load_patterns::pressed`]), and forces
+//! Patterns are loads of a race on its bore in all directions ([`crate::reduction::load_patterns::pressed`]), and forces
 //! of natural modes on the race. Their number is such that under none of them more than a given fraction of the
 //! compliance of bore and contact is omitted. Masses are lumped, as in explicit steps.
 
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::counts::Counts;
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::kinematics::vec3::{Vec3, add_scaled, dot, scale};
 use crate::members::housing_fit::Seat;
+use crate::members::mount::Mount;
 use crate::members::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
 use crate::numeric::dense::DenseSymmetric;
 use crate::numeric::profile::Profile;
 use crate::numeric::sparse::FactorError;
+use crate::plan::counts::Counts;
+use crate::reduction::load_patterns::{LoadPatterns, NOTHING_NEW, patterns};
 use crate::solids::bore_equilibrium::BoreState;
 use crate::solids::condensation::{CondensedBore, beyond_normals, rim};
-use crate::solids::load_patterns::{LoadPatterns, NOTHING_NEW, patterns};
 use crate::solids::model::SolidModel;
 use crate::solids::modes::{Mode, ModeError, ModeOptions, Wanted};
 use crate::solids::tangent::MassMatrix;
@@ -266,7 +266,7 @@ pub(crate) struct Answer {
 }
 
 /// Reduces `model`, condensed as `bore`, for contact of stiffness `penalty`, with static corrections for `loads`, see
-/// [`crate::solids::load_patterns::pressed`].
+/// [`crate::reduction::load_patterns::pressed`].
 ///
 /// # Errors
 ///

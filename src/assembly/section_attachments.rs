@@ -1,19 +1,10 @@
 //! Attachments of bearings, connections and housing fits on flexible bodies.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::mount::Mount;
-use crate::members::ball_set::onto_body;
-use crate::members::flexible_shaft::{Bend, ElasticShaft, Section, SectionNow};
-use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
-
-/// One section, as last placed.
-#[derive(Clone, Debug)]
-pub struct SectionAttachment {
-    /// Index in [`Assembly::shafts`].
-    pub shaft: usize,
-    pub section: Section,
-    pub now: SectionNow,
-}
+use crate::members::flexible_shaft::Bend;
+use crate::members::mount::Mount;
+use crate::members::rigid_body::BodyKinematics;
+use crate::members::section_attachment::SectionAttachment;
 
 /// Section attachments of every mount of an assembly; `None` on rigid bodies.
 #[derive(Clone, Debug, Default)]
@@ -85,47 +76,5 @@ impl SectionAttachments {
         let seats = self.seats.iter().zip(assembly.seats.iter().map(|seat| seat.race));
         let all = bearings.chain(connections).chain(seats);
         all.filter_map(|(hold, mount)| Some((hold.as_ref()?, mount)))
-    }
-}
-
-impl ElasticShaft {
-    /// Amplitudes and rates in a state, whose entries of the shaft begin at `at`.
-    pub fn bend<'s>(&self, at: usize, state: &'s [f64]) -> Bend<'s> {
-        Bend::of(self.count(), &state[at..at + self.entries()])
-    }
-
-    /// Modal accelerations of the shaft among the rates of the state.
-    pub fn pushes<'r>(&self, at: usize, rates: &'r mut [f64]) -> &'r mut [f64] {
-        &mut rates[at + self.amplitudes()..at + self.entries()]
-    }
-}
-
-/// Kinematics at a mount, on a section or on a rigid body.
-pub fn kinematics_at_attachment(
-    hold: &Option<SectionAttachment>,
-    body: &BodyKinematics,
-    mount: &Mount,
-) -> BodyKinematics {
-    hold.as_ref().map_or_else(|| kinematics_at_mount(body, mount), |hold| hold.now.race)
-}
-
-/// Shafts, their first entries in the state, and the state.
-pub type Bent<'b> = (&'b [ElasticShaft], &'b [usize], &'b [f64]);
-
-/// Wrench of loads at a mount on its body; modal forces are added to the modes.
-pub fn wrench_on_body(
-    (hold, mount): (&Option<SectionAttachment>, &Mount),
-    (attached, body): (&BodyKinematics, &BodyKinematics),
-    loads: &Wrench,
-    (shafts, at, state): Bent,
-    rates: &mut [f64],
-) -> Wrench {
-    match hold {
-        None => onto_body(mount, attached, body, loads),
-        Some(hold) => {
-            let (shaft, at) = (&shafts[hold.shaft], at[hold.shaft]);
-            let bend = shaft.bend(at, state);
-            hold.section.take((body, &bend), &hold.now, loads, shaft.pushes(at, rates))
-        }
     }
 }

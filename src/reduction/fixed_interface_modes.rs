@@ -7,14 +7,14 @@
 //! that is φ less the response to the loads by which the race holds the contact nodes, so that nothing has to be
 //! factorised again.
 
+use crate::equilibrium::quasi_static_limit::{FixedInterfaceMode, HousingMass, housing_mass};
 use crate::kinematics::vec3::{Vec3, add, dot};
+use crate::reduction::component_modes::{ReduceError, lowest_modes, natural_modes};
 use crate::solids::bore_equilibrium::BoreSearch;
 use crate::solids::condensation::CondensedBore;
 use crate::solids::model::SolidModel;
 use crate::solids::modes::Mode;
-use crate::solids::reduction::{ReduceError, lowest_modes, natural_modes};
 use crate::solids::tangent::{MassMatrix, consistent_momentum};
-use crate::vibrations::quasi_static_limit::{FixedInterfaceMode, HousingMass, housing_mass};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 

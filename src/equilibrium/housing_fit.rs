@@ -1,11 +1,11 @@
 //! A race in a flexible bore in the equilibrium search: energy, load and stiffness over the coordinates of its body,
 //! with the bore nodes eliminated.
 
-use crate::assembly::mount::Mount;
+use crate::equilibrium::bearing::motion_of_race;
 use crate::equilibrium::model::{Evaluation, Five, Model};
 use crate::equilibrium::statics::StaticsError;
+use crate::members::mount::Mount;
 use crate::members::race_position::InnerRacePosition;
-use crate::members::static_bearing::motion_of_race;
 use crate::solids::bore_equilibrium::BoreSearch;
 use nalgebra::{Matrix3, SMatrix, Vector3, Vector4};
 

@@ -1,33 +1,11 @@
 //! Stages of each evaluation of a motion, read once from the plan items.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::solid::SolidSteps;
-use crate::assembly::plan::{Item, Stage, Subject, does};
 use crate::members::flexible_shaft::{ElasticShaft, ShaftSteps};
+use crate::members::steps::{BearingSteps, BodySteps};
 use crate::members::unbalance::is_coupled;
-
-/// Stages of one bearing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BearingSteps {
-    pub traction: bool,
-    pub damping: bool,
-    pub raceway_profiles: bool,
-    pub pockets: bool,
-    pub guide: bool,
-    pub ball_contact: bool,
-}
-
-/// Stages of one body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BodySteps {
-    pub foundation: bool,
-    pub rotating_load: bool,
-    pub unbalance: bool,
-    /// True if an unbalance is coupled with the spin of a body driven by a torque.
-    pub unbalance_coupled: bool,
-    /// Index of its floating solid.
-    pub floating: Option<usize>,
-}
+use crate::plan::{Item, Stage, Subject, does};
+use crate::solids::plan::SolidSteps;
 
 /// Stages of an assembly.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,7 +44,7 @@ impl Steps {
                 foundation: of(Stage::Foundation),
                 rotating_load: of(Stage::RotatingLoad),
                 unbalance: of(Stage::Unbalance),
-                unbalance_coupled: is_coupled(assembly, index),
+                unbalance_coupled: is_coupled(&assembly.bodies[index], index, &assembly.shafts),
                 floating: assembly.floating.iter().position(|solid| solid.body == index),
             }
         };

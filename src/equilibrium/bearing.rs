@@ -6,15 +6,15 @@
 //! not rotate with the outer race; its part in the stiffness is omitted, which costs an iteration. The cage forces that
 //! keep balls at their azimuths sum to a force on the outer race without an energy.
 
-use crate::assembly::mount::Mount;
-use crate::assembly::plan::Stage;
-use crate::assembly::plan::counts::Counts;
-use crate::assembly::static_lists::StaticBearing;
+use crate::equilibrium::lists::StaticBearing;
 use crate::equilibrium::model::{BearingModel, Evaluation, Five, Model};
 use crate::kinematics::Pose;
+use crate::members::mount::Mount;
 use crate::members::race_position::InnerRacePosition;
 use crate::members::static_ball::{BallPlane, settle};
 use crate::members::static_ball_on_race::add_to_race;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use nalgebra::{Matrix3, Matrix3x5, SMatrix, UnitQuaternion, Vector3};
 
 type Block = SMatrix<f64, 5, 5>;

@@ -1,11 +1,12 @@
 //! Patterns of force on a bore with static correction modes in a reduced housing: the loads of a race.
 
-use crate::assembly::mount::Mount;
-use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBody, StaticSeat};
 use crate::ch2_housing::bore_contact::Penalty;
-use crate::equilibrium::statics::{Condition, StaticOptions, StaticsError, solve_assembly_in};
+use crate::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticBody, StaticSeat};
+use crate::equilibrium::statics::{StaticOptions, StaticsError, solve_assembly_in};
 use crate::kinematics::Pose;
 use crate::kinematics::vec3::{Vec3, cross};
+use crate::members::body::Condition;
+use crate::members::mount::Mount;
 use crate::numeric::dense::DenseFactor;
 use crate::numeric::sparse::FactorError;
 use crate::solids::bore_equilibrium::{

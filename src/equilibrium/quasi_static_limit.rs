@@ -36,7 +36,7 @@ pub struct HousingMass {
     pub damping: f64,
 }
 
-/// Mode of a housing with its race fixed, of a modal mass of 1 kg: see [`crate::solids::fixed_interface_modes`].
+/// Mode of a housing with its race fixed, of a modal mass of 1 kg: see [`crate::reduction::fixed_interface_modes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedInterfaceMode {
     /// ω², 1/s².

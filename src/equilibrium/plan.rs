@@ -1,9 +1,9 @@
 //! Plan items of an equilibrium: each evaluation of the search.
 
-use crate::assembly::lists::GROUND;
-use crate::assembly::plan::{Item, Stage, Subject, does};
-use crate::assembly::static_lists::{Loaded, Place, StaticAssembly, StaticBearing};
 use crate::ch2_housing::bearing::geometry::BearingKind;
+use crate::equilibrium::lists::{Loaded, Place, StaticAssembly, StaticBearing};
+use crate::members::body::GROUND;
+use crate::plan::{Item, Stage, Subject, does, no_solids};
 use nalgebra::Vector3;
 
 /// Reason for centrifugal forces on balls.
@@ -45,7 +45,7 @@ pub fn items(assembly: &StaticAssembly, solids: Vec<Item>, centrifugal: &str) ->
     });
     let flexible = !(solids.is_empty() && assembly.seats.is_empty());
     if !flexible {
-        items.push(crate::assembly::plan::motion::no_solids());
+        items.push(no_solids());
     }
     items.extend(solids);
     let seats = assembly.seats.iter().enumerate();

@@ -8,9 +8,9 @@
 use crate::ch5_cage::floating_frame::FloatingFrame;
 use crate::kinematics::strain::{Sym3, full, green_lagrange};
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
+use crate::reduction::component_modes::{Answer, combine, superposed, work};
 use crate::solids::model::SolidModel;
 use crate::solids::modes::{FreeFactor, ModeError, ModeOptions, Wanted, spread};
-use crate::solids::reduction::{Answer, combine, superposed, work};
 use crate::solids::stress::each_point;
 use crate::solids::tangent::{MassMatrix, Unknowns};
 use std::f64::consts::TAU;

@@ -1,10 +1,10 @@
 //! Plan items of a flexible body.
 
 use crate::assembly::lists::Assembly;
-use crate::assembly::plan::motion::stands_on_ground;
-use crate::assembly::plan::{Item, Stage, Subject};
 use crate::members::flexible_shaft::ElasticShaft;
+use crate::motion::plan::stands_on_ground;
 use crate::numeric::clock::to_digits;
+use crate::plan::{Item, Stage, Subject};
 use std::f64::consts::TAU;
 
 /// A flexible body.

@@ -1,6 +1,6 @@
 //! Plan items of a solid of rubber, which is solved without inertia.
 
-use crate::assembly::plan::{Item, Stage, Subject};
+use crate::plan::{Item, Stage, Subject};
 use crate::solids::rubber::model::RubberProblem;
 
 /// Solution of a solid of rubber.
