@@ -9,7 +9,11 @@ const SHIPPED: &str = include_str!("../../scenes/rotor_in_elements.toml");
 /// Coarse cells, until `end`.
 fn scene(end: &str) -> String {
     let coarse = "longest_layer = \"12.5 mm\"";
-    SHIPPED.replace("longest_layer = \"5 mm\"", coarse).replace("5 ms", end)
+    let unbalance = "unbalance = [{ at = \"0 mm\", size = \"1e-4 kg m\" }]\nprobe = [";
+    SHIPPED
+        .replace("longest_layer = \"5 mm\"", coarse)
+        .replace("5 ms", end)
+        .replace("probe = [", unbalance)
 }
 
 #[test]
@@ -34,6 +38,7 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
     for name in [
         "shaft_mid_y [m]",
         "shaft_heat_joints [J]",
+        "shaft_work_unbalance [J]",
         "left_inner_z [m]",
         "energy_coupled_residual [J]",
     ] {

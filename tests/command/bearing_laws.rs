@@ -1,0 +1,250 @@
+//! Laws of a bearing, from written numbers.
+
+use crate::command_line_common::{done, json, read, text, write};
+use crate::housed_command_common;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::Path;
+use tempfile::tempdir;
+
+const BALL: f64 = 7.938e-3;
+const CONFORMITY: [f64; 2] = [0.515, 0.525];
+
+/// With these keys of the ball, and the rest of the scene.
+fn scene(ball: &str, rest: &str) -> String {
+    let [inner, outer] = CONFORMITY;
+    format!(
+        "[bearing]\nkind = \"deep-groove\"\nballs = 9\nball_phase = \"7 deg\"\npitch_radius = \"19.25 mm\"\n\
+         clearance = {{ radial = \"10 um\" }}\ninner_race = {{ conformity = {inner} }}\nouter_race = {{ conformity = {outer} }}\n\
+         ball = {{ diameter = \"{BALL} m\"{ball} }}\n{rest}"
+    )
+}
+
+/// Rows of a table under their names without units.
+fn rows(folder: &Path) -> Vec<BTreeMap<String, f64>> {
+    let table = read(&folder.join("series.csv"));
+    let mut lines = table.lines();
+    let names: Vec<String> = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .map(|name| name.split(' ').next().unwrap().into())
+        .collect();
+    let row = |line: &str| {
+        let cells = line.split(',').map(|cell| cell.parse().unwrap());
+        names.iter().cloned().zip(cells).collect()
+    };
+    lines.map(row).collect()
+}
+
+/// Runs a command on a scene; returns its summary and its rows.
+fn found(command: &str, content: &str) -> (Value, Vec<BTreeMap<String, f64>>) {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "scene.toml", content);
+    let out = root.path().join("out");
+    done(&[command, &path, "--out", &text(&out)]);
+    (json(&out.join("summary.json")), rows(&out))
+}
+
+const GRAVITY: [f64; 3] = [3.0, -20.0, -90.0];
+
+fn heavy(rest: &str) -> String {
+    let [x, y, z] = GRAVITY;
+    let heavy = ", material = { density = \"19 g/cm^3\" }";
+    scene(heavy, rest)
+        + &format!("[ball_forces]\ngravity = [\"{x} m/s^2\", \"{y} m/s^2\", \"{z} m/s^2\"]\n")
+}
+
+/// Forces on both races and moments about their centres, summed up from the table of the balls: a contact force passes
+/// through the centre of its ball.
+fn moments_are_those_of_the_balls(summary: &Value, balls: &[BTreeMap<String, f64>]) {
+    let vector = |of: &Value| ["x", "y", "z"].map(|axis| of[axis]["value"].as_f64().unwrap());
+    let at = |ball: &BTreeMap<String, f64>, name: &str| {
+        ["x", "y", "z"].map(|axis| ball[&format!("{name}_{axis}")])
+    };
+    // A bearing alone has its races at the top, its outer race at the origin.
+    let races = summary.pointer("/bearings/bearing").unwrap_or(summary);
+    for race in ["inner", "outer"] {
+        let of = &races[format!("{race}_race")];
+        let centre = of.get("centre").or(of.get("position")).map_or([0.0; 3], vector);
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        for ball in balls {
+            let (place, own) = (at(ball, "position"), at(ball, &format!("{race}_force_on_race")));
+            let arm: [f64; 3] = [0, 1, 2].map(|i| place[i] - centre[i]);
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                force[i] += own[i];
+                moment[i] += arm[j] * own[k] - arm[k] * own[j];
+            }
+        }
+        for (found, expected) in [("contact_force", force), ("contact_moment", moment)] {
+            for (found, expected) in vector(&of[found]).into_iter().zip(expected) {
+                // Ball loads of 50 N at 20 mm, to the last digits.
+                assert!((found - expected).abs() <= 1e-8, "{race}: {of} {force:?} {moment:?}");
+            }
+        }
+    }
+}
+
+/// Along its orbit a ball is held by its contacts, its weight and its cage, whichever way the bearing is mounted.
+#[test]
+fn written_forces_balance_on_each_ball() {
+    let mass = 4.0 / 3.0 * PI * (0.5 * BALL).powi(3) * 19e3;
+    for reversed in ["false", "true"] {
+        let content = heavy("[inner_race]\nx = { load = \"30 N\" }\nz = { load = \"-50 N\" }\n");
+        let content = content.replace("balls = 9", &format!("balls = 9\nreversed = {reversed}"));
+        let (summary, balls) = found("statics", &content);
+        let mut largest = 0.0f64;
+        moments_are_those_of_the_balls(&summary, &balls);
+        for ball in &balls {
+            let azimuth = ball["azimuth"].to_radians();
+            let along = [0.0, -azimuth.sin(), azimuth.cos()];
+            // Forces of the ball on both races, less its weight.
+            let taken = |i: usize, axis: &str| {
+                let on = |race: &str| ball[&format!("{race}_force_on_race_{axis}")];
+                along[i] * (on("inner") + on("outer") - mass * GRAVITY[i])
+            };
+            let sum = taken(0, "x") + taken(1, "y") + taken(2, "z");
+            largest = largest.max(sum.abs());
+            // Nine digits of loads of 50 N.
+            assert!((ball["cage_force"] - sum).abs() <= 1e-9, "{reversed}: {ball:?} {sum}");
+        }
+        assert!(largest > 0.3, "{largest}");
+    }
+}
+
+/// Both races turned by the same speed more: the balls roll as before, and so does their friction torque.
+#[test]
+fn friction_torque_depends_on_the_relative_speed() {
+    let torque = |inner: f64, outer: f64| {
+        let held = ["x", "y", "z"].map(|axis| format!("{axis} = {{ displacement = \"0 mm\" }}\n"));
+        let (summary, _) = found(
+            "run",
+            &scene(
+                "",
+                &format!(
+                    "[inner_race]\nspeed = \"{inner} rpm\"\nx = {{ load = \"500 N\" }}\nz = {{ load = \"-200 N\" }}\n\
+                     [outer_race]\nmotion = \"5-dof\"\nspeed = \"{outer} rpm\"\n{}tilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n\
+                     [numerics]\nend = \"4 ms\"\noutput_interval = \"20 us\"\naccuracy = 1e-4\n[output]\nplots = []\nwindow_start = \"2 ms\"\n",
+                    held.concat()
+                ),
+            ),
+        );
+        summary["friction"]["torque"]["value"].as_f64().unwrap()
+    };
+    let still = torque(300.0, 0.0);
+    assert!(still > 0.0);
+    for (inner, outer) in [(400.0, 100.0), (-200.0, -500.0)] {
+        let turning = torque(inner, outer);
+        // Another way of the balls past the load.
+        assert!((turning / still - 1.0).abs() <= 0.02, "{turning} {still}");
+    }
+}
+
+/// Loaded balls are counted race by race: thrown outwards they leave the inner one.
+#[test]
+fn loaded_balls_are_those_of_each_race() {
+    let (summary, balls) = found(
+        "statics",
+        &scene(
+            "",
+            "[inner_race]\nspeed = \"12000 rpm\"\ntilt_y = { tilt = \"0 deg\" }\ntilt_z = { tilt = \"0 deg\" }\n\
+             z = { load = \"-200 N\" }\n[ball_forces]\ncentrifugal = true\n",
+        ),
+    );
+    let counts = ["inner", "outer"].map(|race| {
+        let loads: Vec<f64> = balls.iter().map(|ball| ball[&format!("{race}_load")]).collect();
+        let most = loads.iter().copied().fold(0.0, f64::max);
+        let counted = loads.iter().filter(|load| **load > 0.0 && **load >= 0.01 * most).count();
+        let zone = &summary["load_zone"];
+        assert_eq!(zone[&format!("balls_loaded_{race}")], counted, "{race}: {zone} {loads:?}");
+        counted
+    });
+    assert!(counts[0] < 5 && counts[1] == 9, "{counts:?}");
+}
+
+/// A run that stands still reaches as far up its grooves as the equilibrium: contact angle and half the ellipse, in degrees.
+#[test]
+fn a_run_reaches_as_far_up_its_grooves_as_the_equilibrium() {
+    let content = scene(
+        "",
+        "[inner_race]\nx = { load = \"500 N\" }\n[traction]\nlaw = \"none\"\n\
+         [numerics]\nend = \"10 us\"\noutput_interval = \"1 us\"\nstart = \"equilibrium\"\n[output]\nplots = []\n",
+    );
+    let (summary, _) = found("run", &content);
+    let (_, balls) = found("statics", &content);
+    for (race, conformity) in ["inner", "outer"].into_iter().zip(CONFORMITY) {
+        let reach = &summary["extremes"][format!("{race}_race")]["farthest_from_bottom"];
+        let value = |key: &str| reach[key]["value"].as_f64().unwrap();
+        let angle = balls[0][&format!("{race}_contact_angle")];
+        let half = balls[0][&format!("{race}_semi_major")] / (conformity * BALL);
+        assert!((value("contact_angle") - angle).abs() <= 1e-6 * angle, "{race}: {reach}");
+        let expected = angle + half.to_degrees();
+        assert!((value("ellipse_reaches") - expected).abs() <= 1e-6 * expected, "{race}: {reach}");
+    }
+}
+
+/// A point of a sweep is the equilibrium of the scene with its keys set: numbers, and every code of a warning.
+#[test]
+fn a_point_of_a_sweep_is_its_own_equilibrium() {
+    let root = tempdir().unwrap();
+    let overloaded = scene("", "[inner_race]\nspeed = \"20000 rpm\"\nx = { load = \"-30 kN\" }\n[ball_forces]\ncentrifugal = false\n")
+        .replace("kind = \"deep-groove\"", "kind = \"angular-contact\"\ncontact_angle = \"15 deg\"")
+        .replace("clearance = { radial = \"10 um\" }\n", "");
+    let housed =
+        housed_command_common::scene_text("method = \"quasi-static\"\nfit.radial = \"1 um\"\n", "");
+    let cases = [
+        (overloaded, "inner_race.x.load", ["-20 kN", "-30 kN"], 3),
+        (housed, "solid.material.youngs_modulus", ["100 GPa", "205 GPa"], 0),
+    ];
+    for (number, (content, key, values, codes)) in cases.into_iter().enumerate() {
+        let path = write(root.path(), &format!("scene{number}.toml"), &content);
+        let out = root.path().join(format!("sweep{number}"));
+        done(&[
+            "sweep",
+            &path,
+            "--vary",
+            &format!("{key}={}", values.join(", ")),
+            "--out",
+            &text(&out),
+        ]);
+        let table = read(&out.join("sweep.csv"));
+        let names: Vec<&str> = table
+            .lines()
+            .next()
+            .unwrap()
+            .split(',')
+            .map(|name| name.split(' ').next().unwrap())
+            .collect();
+        let mut places = Vec::new();
+        for (row, value) in table.lines().skip(1).zip(values) {
+            let row: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+            let cell = |name: &str| row[names.iter().position(|of| *of == name).unwrap()];
+            let own = root.path().join("own");
+            let _ = std::fs::remove_dir_all(&own);
+            done(&["statics", &path, "--out", &text(&own), "--set", &format!("{key}={value}")]);
+            let summary = json(&own.join("summary.json"));
+            let position = &summary["inner_race"]["position"];
+            for axis in ["x", "y", "z"] {
+                let expected = position[axis]["value"].as_f64().unwrap();
+                let found = 1e-6 * cell(axis);
+                // Another start of the same search; a millionth of a micrometre.
+                let close = (found - expected).abs() <= 1e-9 * expected.abs() + 1e-12;
+                assert!(close, "{key} {axis}: {found} {expected}");
+            }
+            places.push(["x", "y", "z"].map(cell));
+            let warnings = summary["warnings"].as_array().unwrap();
+            let mut numbers: Vec<u32> = warnings
+                .iter()
+                .map(|of| of["code"].as_str().unwrap()[1..3].parse().unwrap())
+                .collect();
+            numbers.sort_unstable();
+            numbers.dedup();
+            let expected = numbers.iter().fold(0.0, |all, code| 100.0 * all + f64::from(*code));
+            assert_eq!(cell("warnings"), expected, "{key}={value}: {warnings:?}");
+            assert!(value != values[1] || numbers.len() >= codes, "{numbers:?}");
+        }
+        assert_ne!(places[0], places[1], "{key}");
+    }
+}

@@ -1,0 +1,239 @@
+//! Small vibrations, bending and run-ups of rotors against closed forms, from written numbers.
+
+use crate::command_line_common::{done, json, read, scene, text, write};
+use nalgebra::Matrix4;
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+use tempfile::tempdir;
+
+/// Frequency (Hz), damping ratio and direction of each whirl mode.
+fn whirl(content: &str) -> Vec<[f64; 3]> {
+    let root = tempdir().unwrap();
+    let path = write(root.path(), "scene.toml", content);
+    let out = root.path().join("out");
+    done(&["modes", &path, "--out", &text(&out)]);
+    let summary = json(&out.join("summary.json"));
+    let modes = summary["rotor"]["whirl"].as_array().unwrap().iter();
+    let numbers = ["frequency", "damping_ratio", "direction"];
+    modes.map(|of| numbers.map(|key| of[key]["value"].as_f64().unwrap())).collect()
+}
+
+fn assert_whirl(found: &[[f64; 3]], expected: &mut [[f64; 2]], tolerance: f64) {
+    expected.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        for (found, expected) in found.iter().zip(expected.iter()) {
+            assert!((found - expected).abs() <= tolerance * expected.abs(), "{found} {expected}");
+        }
+    }
+}
+
+/// A rigid body on one spring whose planes are coupled, stiffness and damping each their own way.
+#[test]
+fn coupled_planes_whirl_as_their_matrices_have_it() {
+    let mass = 10.0;
+    let (stiffness, damping) = ([[4e6, 1e6], [-5e5, 6e6]], [[300.0, 900.0], [-200.0, 500.0]]);
+    let list = |of: [[f64; 2]; 2], unit: &str| {
+        let [[y, yz], [zy, z]] = of;
+        format!(
+            "{{ y = \"{y} {unit}\", z = \"{z} {unit}\", yz = \"{yz} {unit}\", zy = \"{zy} {unit}\" }}"
+        )
+    };
+    let found = whirl(&format!(
+        "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\ntilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n\
+         speed = \"1000 rpm\"\ninertia = {{ mass = \"{mass} kg\", axial = \"0.1 kg m^2\", transverse = \"0.1 kg m^2\" }}\n\
+         [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\nstiffness = {}\ndamping = {}\n",
+        list(stiffness, "N/m"),
+        list(damping, "N s/m"),
+    ));
+    let mut rates = Matrix4::zeros();
+    for i in 0..2 {
+        rates[(i, i + 2)] = 1.0;
+        for j in 0..2 {
+            rates[(i + 2, j)] = -stiffness[i][j] / mass;
+            rates[(i + 2, j + 2)] = -damping[i][j] / mass;
+        }
+    }
+    let values = rates.complex_eigenvalues();
+    let upper = values.iter().filter(|value| value.im > 0.0);
+    let mut expected: Vec<_> =
+        upper.map(|value| [value.im / TAU, -value.re / value.norm()]).collect();
+    assert_whirl(&found, &mut expected, 1e-9);
+    // ż² falls behind y: with y = cos, z = sin turns from Y towards Z, and k_yz > 0 > k_zy feeds the turn the other way.
+    let skew = |yz: &str, zy: &str| {
+        let modes = whirl(&format!(
+            "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\ntilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n\
+             speed = \"1000 rpm\"\ninertia = {{ mass = \"10 kg\", axial = \"0.1 kg m^2\", transverse = \"0.1 kg m^2\" }}\n\
+             [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\n\
+             stiffness = {{ y = \"4e6 N/m\", z = \"4e6 N/m\", yz = \"{yz} N/m\", zy = \"{zy} N/m\" }}\n"
+        ));
+        modes.into_iter().find(|mode| mode[1] < 0.0).unwrap()[2]
+    };
+    assert!(skew("1e5", "-1e5") > 0.9 && skew("-1e5", "1e5") < -0.9);
+}
+
+/// Each coordinate of a foundation vibrates with its own spring and dashpot.
+#[test]
+fn springs_and_dashpots_of_a_foundation_act_on_their_coordinates() {
+    let stiffness = [2e6, 4e6, 3e5, 5e5];
+    let damping = [300.0, 500.0, 20.0, 40.0];
+    let [k, c] = [stiffness, damping].map(|of| {
+        let units = if of == stiffness { ["N/m", "N m/rad"] } else { ["N s/m", "N m s/rad"] };
+        let names = ["y", "z", "tilt_y", "tilt_z"];
+        let keys = names.iter().zip(of).enumerate();
+        keys.map(|(i, (name, value))| format!("{name} = \"{value} {}\"", units[i / 2]))
+            .collect::<Vec<_>>()
+            .join(", ")
+    });
+    let found = whirl(&format!(
+        "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\nspeed = \"0.001 rpm\"\n\
+         inertia = {{ mass = \"10 kg\", axial = \"0.05 kg m^2\", transverse = \"0.2 kg m^2\" }}\n\
+         [body.rotor.foundation]\nstiffness = {{ {k} }}\ndamping = {{ {c} }}\n\
+         [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\nstiffness = {{ y = \"1e-3 N/m\" }}\n"
+    ));
+    let inertia = [10.0f64, 10.0, 0.2, 0.2];
+    let mut expected: Vec<_> = (0..4)
+        .map(|i| {
+            let natural = (stiffness[i] / inertia[i]).sqrt();
+            let ratio = 0.5 * damping[i] / (stiffness[i] * inertia[i]).sqrt();
+            [natural * (1.0 - ratio * ratio).sqrt() / TAU, ratio]
+        })
+        .collect();
+    // A turn of 1e-4 rad/s.
+    assert_whirl(&found, &mut expected, 1e-6);
+}
+
+/// Damping in proportion to the mass takes α/2 from every rate, of rigid motion and of bending.
+#[test]
+fn absolute_damping_of_a_shaft_damps_all_motion_alike() {
+    let shipped = read(Path::new(&scene("rotor_on_springs.toml")));
+    let dense = "density = \"7810 kg/m^3\"";
+    let modes = |damping: &str| {
+        whirl(
+            &shipped.replace("4000 rpm", "0.001 rpm").replace(dense, &format!("{dense}{damping}")),
+        )
+    };
+    let (free, damped) = (modes(""), modes("\ndamping = \"50 1/s\""));
+    assert!(free.len() >= 8);
+    let mut expected: Vec<_> = free
+        .iter()
+        .map(|[frequency, ..]| {
+            let ratio = 25.0 / (TAU * frequency);
+            [frequency * (1.0 - ratio * ratio).sqrt(), ratio]
+        })
+        .collect();
+    assert_whirl(&damped, &mut expected, 1e-6);
+}
+
+/// A bent shaft shortens towards its centre of mass: with its left end held along the axis and its load in the middle,
+/// the middle moves by ½ ∫ w'² of the left half, w' = F (L² − 4 x²)/(16 E I).
+#[test]
+fn a_bent_shaft_shortens_towards_its_centre_of_mass() {
+    let root = tempdir().unwrap();
+    let (length, diameter, young, force) = (1.0f64, 0.02f64, 211e9, 100.0);
+    let spring = |name: &str, at: f64, along: &str| {
+        format!(
+            "[spring.{name}]\nfrom = \"ground\"\nto = \"rotor\"\nto_at = \"{at} m\"\nfrom_at = \"{at} m\"\n\
+             stiffness = {{ {along}y = \"1e8 N/m\", z = \"1e8 N/m\" }}\n"
+        )
+    };
+    let path = write(
+        root.path(),
+        "scene.toml",
+        &format!(
+            "[body.rotor]\nx = {{ load = \"0 N\" }}\nspeed = \"0 rpm\"\n[body.rotor.beam]\nyoungs_modulus = \"211 GPa\"\n\
+             poisson_ratio = 0.3\ndensity = \"7810 kg/m^3\"\nsegments = [{{ length = \"{length} m\", outer_diameter = \"{diameter} m\" }}]\n\
+             load = [{{ at = \"0 mm\", z = \"-{force} N\" }}]\n{}{}",
+            spring("left", -0.5, "x = \"1e6 N/m\", "),
+            spring("right", 0.5, "")
+        ),
+    );
+    let out = root.path().join("out");
+    done(&["statics", &path, "--out", &text(&out)]);
+    let summary = json(&out.join("summary.json"));
+    let found = summary["bodies"]["rotor"]["position"]["x"]["value"].as_f64().unwrap();
+    let slope = force * length * length * 64.0 / (16.0 * young * PI * diameter.powi(4));
+    let expected = -0.5 * slope * slope * length * 4.0 / 15.0;
+    // Shear, (d/L)² of the deflection.
+    assert!((found / expected - 1.0).abs() <= 5e-3, "{found} {expected}");
+}
+
+/// Over a run-up the amplitude along Z is that of Z, along Y that of Y.
+#[test]
+fn amplitudes_of_a_run_up_are_drawn_axis_by_axis() {
+    let root = tempdir().unwrap();
+    let path = write(
+        root.path(),
+        "scene.toml",
+        "[body.rotor]\nx = { displacement = \"0 mm\" }\ntilt_y = { tilt = \"0 deg\" }\ntilt_z = { tilt = \"0 deg\" }\n\
+         speed = { ramp = [\"600 rpm\", \"3000 rpm\"], duration = \"1 s\" }\nunbalance = \"1e-3 kg m\"\n\
+         inertia = { mass = \"10 kg\", axial = \"0.1 kg m^2\", transverse = \"0.1 kg m^2\" }\n\
+         [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\nstiffness = { y = \"4e6 N/m\", z = \"1e6 N/m\" }\n\
+         damping = { y = \"300 N s/m\", z = \"500 N s/m\" }\n\
+         [numerics]\nend = \"1 s\"\noutput_interval = \"0.5 ms\"\nstep = \"50 us\"\n[output]\nplots = [\"run-up\"]\n",
+    );
+    let out = root.path().join("out");
+    done(&["run", &path, "--out", &text(&out)]);
+    let picture = read(&out.join("run_up_amplitude_rotor.svg"));
+    let heights = |part: &str| -> Vec<f64> {
+        let points = part.split_once("points=\"").unwrap().1.split('"').next().unwrap();
+        points
+            .split_whitespace()
+            .map(|point| point.split_once(',').unwrap().1.parse().unwrap())
+            .collect()
+    };
+    let lines: Vec<Vec<f64>> = picture.split("<polyline").skip(1).map(heights).collect();
+    let floor = lines.iter().flatten().fold(0.0, |most: f64, y| most.max(*y).min(500.0));
+    let curves: Vec<f64> = lines
+        .iter()
+        .filter(|line| line.len() > 10)
+        .map(|line| floor - line.iter().copied().fold(f64::INFINITY, f64::min))
+        .collect();
+    let rows = read(&out.join("series.csv"));
+    let mut rows = rows.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let header = rows.next().unwrap();
+    let [y, z] = ["rotor_y [m]", "rotor_z [m]"]
+        .map(|name| header.iter().position(|of| *of == name).unwrap());
+    let most = rows.fold([0.0f64; 2], |most, row| {
+        let at = |column: usize| row[column].parse::<f64>().unwrap().abs();
+        [most[0].max(at(y)), most[1].max(at(z))]
+    });
+    let [half_y, _, half_z, _] = curves[..] else { panic!("{curves:?}") };
+    let (drawn, written) = (half_z / half_y, most[1] / most[0]);
+    // A pixel of 27, and the vibration of a turn about its middle.
+    assert!((drawn / written - 1.0).abs() <= 0.15, "{drawn} {written}");
+}
+
+/// An unbalance pulls a resting shaft to its own side: as a beam, and in elements that take steps of their own.
+#[test]
+fn an_unbalance_pulls_where_its_angle_points() {
+    let shipped = read(Path::new(&scene("rotor_in_elements.toml")));
+    let root = tempdir().unwrap();
+    let elements = "mesh = { order = 1, method = \"explicit\", longest_layer = \"5 mm\" }\n";
+    assert!(shipped.contains(elements));
+    let coarse = elements.replace("5 mm", "25 mm");
+    for (name, mesh) in [("elements", coarse.as_str()), ("beam", "")] {
+        let kept: Vec<&str> =
+            shipped.lines().filter(|line| !line.starts_with("load = [")).collect();
+        let content = (kept.join("\n") + "\n")
+            .replace(elements, mesh)
+            .replace("probe = [", "unbalance = [{ at = \"0 mm\", size = \"1e-2 kg m\", angle = \"30 deg\" }]\nprobe = [")
+            .replace("end = \"5 ms\"", "end = \"20 us\"\nstart = \"nominal\"")
+            .replace("output_interval = \"20 us\"", "output_interval = \"2 us\"");
+        let content =
+            if name == "elements" { content.replace("\nstart = \"nominal\"", "") } else { content };
+        let path = write(root.path(), &format!("{name}.toml"), &content);
+        let out = root.path().join(name);
+        done(&["run", &path, "--out", &text(&out), "--set", "output.plots=[]"]);
+        let rows = read(&out.join("series.csv"));
+        let header: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
+        let last: Vec<&str> = rows.lines().last().unwrap().split(',').collect();
+        let [y, z] = ["shaft_mid_y [m]", "shaft_mid_z [m]"].map(|name| {
+            let column = header.iter().position(|of| *of == name).unwrap();
+            last[column].parse::<f64>().unwrap()
+        });
+        let angle = z.atan2(y).to_degrees();
+        // It turns by 0.7° in 20 µs.
+        assert!(y.hypot(z) > 1e-7 && (angle - 30.0).abs() <= 1.0, "{name}: {angle} {y} {z}");
+    }
+}
