@@ -20,6 +20,7 @@ use crate::members::contact_traction::{traction_lanes, traction_plain};
 use crate::members::raceway_profile;
 use crate::members::raceway_profile::{ProfiledPair, RacewayProfiles};
 use crate::members::rigid_body::BodyKinematics;
+use serde::{Deserialize, Serialize};
 
 /// Laws that all contacts share.
 #[derive(Clone, Debug)]
@@ -120,7 +121,7 @@ impl ContactTable {
 }
 
 /// Work counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     pub evaluations: u64,
     pub distance_tests: u64,
@@ -134,23 +135,6 @@ pub struct Work {
     pub factorisations: u64,
     /// Attempts rejected by the error control.
     pub rejected_steps: u64,
-}
-
-impl Work {
-    /// All counts in the order of files.
-    pub fn counts(&mut self) -> [&mut u64; 9] {
-        [
-            &mut self.evaluations,
-            &mut self.distance_tests,
-            &mut self.loaded_contacts,
-            &mut self.slices,
-            &mut self.pocket_tests,
-            &mut self.guide_tests,
-            &mut self.ball_tests,
-            &mut self.factorisations,
-            &mut self.rejected_steps,
-        ]
-    }
 }
 
 /// Slopes of traction in addition to forces, or not.

@@ -12,6 +12,7 @@ use crate::kinematics::Pose;
 use crate::kinematics::euler::about;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, dot, scale, sub};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A race at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -156,7 +157,7 @@ pub fn kinematics_at_mount(body: &BodyKinematics, mount: &Mount) -> BodyKinemati
 }
 
 /// Force and moment on a body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
     /// Contacts, gravity, rotating load, unbalance; N, inertial axes.
     pub force: Vec3,

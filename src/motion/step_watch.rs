@@ -14,6 +14,7 @@ use crate::members::ball_set::BallSet;
 use crate::motion::simulation::{Integrator, Simulation, SimulationError, Stepping};
 use crate::motion::stability::step_limit;
 use crate::motion::system::System;
+use serde::{Deserialize, Serialize};
 
 /// Steps between two checks of the contacts.
 pub const CHECK_EVERY: u64 = 16;
@@ -35,7 +36,7 @@ const ROOM: f64 = 1.5;
 const DAMPED: f64 = 1.5;
 
 /// Rates of the contacts that limit the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stiffness {
     /// Largest contact stiffness over mass, 1/s².
     pub oscillation: f64,
@@ -122,9 +123,10 @@ fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness 
 }
 
 /// Limit found so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepWatch {
     /// Smallest limit found, s; `None` if nothing was stiff yet.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub smallest: Option<f64>,
     /// Largest contact rates at an evaluation of the Jacobian.
     pub stiffest: Stiffness,

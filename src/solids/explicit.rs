@@ -14,6 +14,7 @@ use crate::solids::runge_kutta::Stages;
 use crate::solids::step_limit::{SolidStepLimit, step_limit};
 use crate::solids::tet4_blocks::Node;
 use crate::solids::threads::Partition;
+use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExplicitMethod {
@@ -48,7 +49,7 @@ impl SolidStepping {
 }
 
 /// Work counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolidWork {
     pub evaluations: u64,
     pub elements: u64,

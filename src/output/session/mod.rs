@@ -25,6 +25,7 @@ use crate::solids::bore_equilibrium::BoreError;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::SolidError;
 use crate::solids::rubber::error::RubberError;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -103,7 +104,7 @@ pub struct Session<'p> {
 }
 
 /// State from which a later run resumes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sound {
     pub checkpoint: Checkpoint,
     pub watch: LedgerWatch,

@@ -25,6 +25,7 @@ use crate::solids::model::{SolidError, SolidModel};
 use crate::solids::rubber::checkpoint::RubberCheckpoint;
 use crate::solids::step_limit::{SolidStepLimit, step_limit};
 use crate::solids::threads::WorkerPool;
+use serde::{Deserialize, Serialize};
 
 pub enum Parts<'p> {
     Bearing(Box<Assembly>),
@@ -142,7 +143,7 @@ impl Motion<'_> {
 }
 
 /// Complete state of a motion, to resume with the same bits.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Checkpoint {
     Bearing(Box<BearingCheckpoint>),
     Solid(Box<SolidCheckpoint>, SolidStepLimit),

@@ -15,6 +15,7 @@ use crate::solids::rubber::model::{Moment, RubberModel};
 use crate::solids::rubber::newton::{Convergence, Search, Stop};
 use crate::solids::rubber::path_following::PathLimits;
 use crate::solids::rubber::tangent::StepLaw;
+use serde::{Deserialize, Serialize};
 
 /// Choice of the step size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +46,7 @@ impl Default for StepOptions {
 }
 
 /// Number of steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepCounts {
     pub accepted: u64,
     /// Rejected for want of an equilibrium or for a large error.
