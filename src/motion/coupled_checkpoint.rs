@@ -13,9 +13,9 @@ use crate::motion::explicit_solid::{SteppedSolid, seated};
 use crate::motion::race_in_bore::{Growth, Seat};
 use crate::motion::simulation::Simulation;
 use crate::solids::checkpoint::SolidCheckpoint;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid};
 use crate::solids::rubber::checkpoint::RubberCheckpoint;
-use crate::solids::rubber::error::RubberError;
 use crate::solids::step_limit::SolidStepLimit;
 use serde::{Deserialize, Serialize};
 
@@ -109,7 +109,7 @@ impl BondedBushing<'_> {
     }
 
     /// Continues in coupling steps of this length (s).
-    fn restore(&mut self, coupling_step: f64, kept: &BushingCheckpoint) -> Result<(), RubberError> {
+    fn restore(&mut self, coupling_step: f64, kept: &BushingCheckpoint) -> Result<(), SolidError> {
         self.most = kept.most;
         self.step_in(coupling_step);
         for (now, kept) in self.sleeves.iter_mut().zip(&kept.sleeves) {

@@ -9,8 +9,8 @@ use crate::motion::explicit_shaft::{JointSnapshot, SteppedShaft};
 use crate::motion::race_in_bore::{Seat, SeatSnapshot, SeatState};
 use crate::motion::simulation::Simulation;
 use crate::solids::energy::SolidLedger;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
-use crate::solids::model::SolidError;
 use crate::solids::tet4_blocks::Node;
 
 /// A solid in explicit steps, its housing fits, its attachments if it is a shaft, its contacts if it is a cage.

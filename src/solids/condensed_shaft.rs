@@ -20,7 +20,8 @@ use crate::mesh::tet_mesh::{Face, TetMesh};
 use crate::mesh::vector_area::vector_areas;
 use crate::numeric::profile::Profile;
 use crate::numeric::sparse::{Factor, FactorError};
-use crate::solids::model::{Prescribed, SolidError, SolidModel, SolidProblem};
+use crate::solids::error::SolidError;
+use crate::solids::model::{Prescribed, SolidModel, SolidProblem};
 use crate::solids::revolution::{
     AXES, CENTRED, NONE, centre_of_round, momenta, refuse_unlike, rigid,
 };

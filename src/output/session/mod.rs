@@ -22,9 +22,8 @@ use crate::output::recorder::Recorder;
 use crate::output::series::{Series, SeriesError};
 use crate::output::table::readable;
 use crate::solids::bore_equilibrium::BoreError;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
-use crate::solids::model::SolidError;
-use crate::solids::rubber::error::RubberError;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -55,8 +54,6 @@ pub enum SessionError {
     QuasiStaticSequence(#[from] QuasiStaticError),
     #[error(transparent)]
     Bore(#[from] BoreError),
-    #[error(transparent)]
-    Rubber(#[from] RubberError),
     #[error(
         "{residual:.3e} J are unaccounted for at t = {} s, step {step}, more than {limit} of \
          the {turned_over:.3e} J exchanged; take a smaller step",
