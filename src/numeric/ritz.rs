@@ -18,15 +18,6 @@ pub fn sorted(
     (values, eigen.eigenvectors.select_columns(&numbers))
 }
 
-/// Ascending λ of K x = λ M x, and columns x of unit modal mass; `None` if the mass is not positive definite.
-pub fn modes(stiffness: &DMatrix<f64>, mass: DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
-    let lower = mass.cholesky()?.l();
-    let half = lower.solve_lower_triangular(stiffness)?;
-    let both = lower.solve_lower_triangular(&half.transpose())?;
-    let (values, vectors) = sorted(0.5 * (&both + both.transpose()), f64::total_cmp);
-    Some((values, lower.tr_solve_lower_triangular(&vectors)?))
-}
-
 /// Combinations of vectors, scaled by `unit`, that are orthonormal under their Gram matrix, as columns. Those of which
 /// less than `least` is independent of the others are dropped.
 pub fn independent(gram: DMatrix<f64>, unit: impl Fn(usize) -> f64, least: f64) -> DMatrix<f64> {

@@ -8,7 +8,6 @@
 //! factorised again.
 
 use crate::kinematics::vec3::{Vec3, add, dot};
-use crate::numeric::ritz;
 use crate::solids::bore_equilibrium::BoreSearch;
 use crate::solids::condensation::CondensedBore;
 use crate::solids::model::SolidModel;
@@ -16,7 +15,7 @@ use crate::solids::modes::Mode;
 use crate::solids::reduction::{ReduceError, lowest_modes, natural_modes};
 use crate::solids::tangent::{MassMatrix, consistent_momentum};
 use crate::vibrations::quasi_static_limit::{FixedInterfaceMode, HousingMass, housing_mass};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 
 /// Choice of natural modes of a housing.
@@ -86,14 +85,19 @@ fn fixed_interface_modes(
     });
     let mass = DMatrix::from_fn(count, count, |k, l| inner(&held[k], &of_held[l]));
     let shared = DMatrix::from_fn(4, count, |i, l| inner(&followers[i], &of_held[l]));
-    let stiffness = 0.5 * (&stiffness + stiffness.transpose());
-    let Some((squares, shapes)) = ritz::modes(&stiffness, mass) else { return Vec::new() };
-    let shared = shared * shapes;
-    let of = |(k, square)| FixedInterfaceMode {
-        square,
+    let Some(factor) = mass.cholesky() else { return Vec::new() };
+    let lower = factor.l();
+    let over = |of: DMatrix<f64>| lower.solve_lower_triangular(&of).unwrap_or(of);
+    let both = over(over(0.5 * (&stiffness + stiffness.transpose())).transpose());
+    let eigen = SymmetricEigen::new(0.5 * (&both + both.transpose()));
+    let shared = over(shared.transpose()).transpose() * &eigen.eigenvectors;
+    let of = |k: usize| FixedInterfaceMode {
+        square: eigen.eigenvalues[k],
         shared: std::array::from_fn(|i| shared[(i, k)]),
     };
-    squares.into_iter().enumerate().map(of).collect()
+    let mut all: Vec<FixedInterfaceMode> = (0..count).map(of).collect();
+    all.sort_by(|a, b| a.square.total_cmp(&b.square));
+    all
 }
 
 /// A displacement of all nodes with the response to the forces of the fixed race at the contact nodes.

@@ -5,11 +5,10 @@
 
 use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::kinematics::vec3::dot;
-use crate::numeric::ritz;
 use crate::solids::bore_equilibrium::BoreSearch;
 use crate::solids::model::SolidModel;
 use crate::solids::tangent::consistent_momentum;
-use nalgebra::{DMatrix, DVector, Matrix4};
+use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen};
 use std::f64::consts::TAU;
 
 /// A rigid body in motion.
@@ -119,15 +118,20 @@ pub fn modes(
     let kept: Vec<usize> = (0..count).filter(|&i| i >= own || bodies[i / 5].free[i % 5]).collect();
     let picked = |of: &DMatrix<f64>| of.select_rows(&kept).select_columns(&kept);
     let (stiffness, mass) = (picked(&stiffness), picked(&mass));
-    let Some((squares, shapes)) = ritz::modes(&stiffness, mass.clone()) else { return Vec::new() };
+    let Some(factor) = mass.clone().cholesky() else { return Vec::new() };
+    let lower = factor.l();
+    let half = lower.solve_lower_triangular(&stiffness).unwrap_or_else(|| stiffness.clone());
+    let both = lower.solve_lower_triangular(&half.transpose()).unwrap_or(half);
+    let eigen = SymmetricEigen::new(0.5 * (&both + both.transpose()));
     let whole = |part: &DVector<f64>| {
         let mut all = Coordinates::zeros(count);
         kept.iter().zip(part.iter()).for_each(|(&i, x)| all[i] = *x);
         all
     };
-    (0..kept.len())
+    let mut found: Vec<Mode> = (0..kept.len())
         .map(|k| {
-            let shape = shapes.column(k).into_owned();
+            let column = eigen.eigenvectors.column(k).into_owned();
+            let shape = lower.transpose().solve_upper_triangular(&column).unwrap_or(column);
             let momentum = whole(&(&mass * &shape));
             let shape = whole(&shape);
             let mut at = known;
@@ -142,9 +146,11 @@ pub fn modes(
                 part
             };
             let housings = housings.iter().map(&mut share).collect();
-            Mode { square: squares[k], momentum, housings, shape }
+            Mode { square: eigen.eigenvalues[k], momentum, housings, shape }
         })
-        .collect()
+        .collect();
+    found.sort_by(|a, b| a.square.total_cmp(&b.square));
+    found
 }
 
 /// Lowest natural frequency, Hz, about an equilibrium with this stiffness over the coordinates of the bodies and the
