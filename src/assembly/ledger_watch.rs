@@ -1,5 +1,7 @@
 //! Checks of the energy ledger of a run: at each row of a run with a solid, otherwise at intervals of its own.
 
+use serde::{Deserialize, Serialize};
+
 /// Consecutive checks with an energy residual beyond the limit that end a run. A single one may be an impact on a body
 /// at rest, whose residual is large compared with the little energy turned over.
 pub const MOST_OPEN: u32 = 5;
@@ -9,7 +11,7 @@ pub const MOST_OPEN: u32 = 5;
 const NOTHING: f64 = 1e-18;
 
 /// State of the energy ledger.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LedgerWatch {
     /// Initial energy less work done, J: reference of the ledger of a solid alone.
     pub first: f64,

@@ -16,6 +16,7 @@
 //! frequency. Springs as stiff as the contact do not depend on the load until they slip.
 
 use crate::kinematics::vec3::{Vec3, add, add_scaled, dot, scale, sub};
+use serde::{Deserialize, Serialize};
 
 /// Friction law of a bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +35,7 @@ pub const STRETCH: f64 = 1e-10;
 
 /// State of the friction spring of a node. All components are in the race's own axes, so that a common rigid motion of
 /// both bodies does not change it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spring {
     /// Position of the spring's end on the race, m.
     pub anchor: Vec3,

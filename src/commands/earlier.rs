@@ -3,8 +3,7 @@
 use super::{pictures, print};
 use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::folder::{FolderContent, ResultsFolder, claim, content};
-use bearing_dynamics::output::state::arrays::remove_arrays;
-use bearing_dynamics::output::{fields, json};
+use bearing_dynamics::output::{json, state};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -64,9 +63,7 @@ fn refuse_other(folder: &Path, writes: Writes) -> Result<(), Box<dyn Error>> {
 
 /// Returns an error if the folder holds an unfinished run.
 pub fn refuse_unfinished_run(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let state = json::read(&folder.join("state.json")).unwrap_or_default();
-    // Earlier versions wrote the state of a bearing in a housing one level deeper.
-    let of = if state["bearing"]["stopped"].is_string() { &state["bearing"] } else { &state };
+    let of = state::head(&folder.join(state::STATE)).unwrap_or_default();
     if !matches!(of["stopped"].as_str(), Some("running" | "interrupted")) {
         return Ok(());
     }
@@ -127,7 +124,6 @@ pub fn remove_earlier(folder: &Path) -> Result<bool, Box<dyn Error>> {
             _ => {}
         }
     }
-    remove_arrays(folder, "");
     Ok(was_complete)
 }
 

@@ -26,6 +26,7 @@ use crate::plan::counts::StageCounts;
 use crate::solids::bore_equilibrium::{Axial, BoreError, Fit, RaceLoad};
 use crate::solids::condensation::CondensedBore;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Bodies under varying loads, and races in housings.
@@ -262,7 +263,7 @@ pub struct QuasiStaticSequence<'b> {
 }
 
 /// Work of the equilibria.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Effort {
     /// Largest load residual of a race in its bore over its load.
     pub largest_residual: f64,
@@ -272,15 +273,13 @@ pub struct Effort {
 }
 
 /// Checkpoint, from which a sequence continues with the same bits.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct QuasiStaticCheckpoint {
     /// s.
     pub time: f64,
     pub found: u64,
     pub effort: Effort,
     pub memory: SearchMemory,
-    /// Number of nodes of each bore.
-    pub nodes: Vec<usize>,
 }
 
 impl<'b> QuasiStaticSequence<'b> {
@@ -329,7 +328,6 @@ impl<'b> QuasiStaticSequence<'b> {
             found: self.found,
             effort: self.effort,
             memory: self.search.memory(),
-            nodes: self.problem.seats.iter().map(|seat| seat.bore.nodes.len()).collect(),
         }
     }
 

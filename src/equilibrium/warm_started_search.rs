@@ -17,6 +17,7 @@ use crate::solids::bore_equilibrium::{
 };
 use crate::solids::condensation::CondensedBore;
 use nalgebra::{SVector, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// A search that starts from its last solution.
 pub struct WarmStartedSearch<'b> {
@@ -26,9 +27,10 @@ pub struct WarmStartedSearch<'b> {
 }
 
 /// State from which a search continues with the same bits.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SearchMemory {
     /// x, y, z (m), tilts (rad) of each body; `None` before the first solution.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub places: Option<Vec<[f64; 5]>>,
     /// Contact nodes of each bore, ascending.
     pub touching: Vec<Vec<usize>>,

@@ -3,6 +3,13 @@
 //! Two kernels call the same scalar laws: [`Kernel::Scalar`] contact by contact, [`Kernel::Simd`] over blocks of
 //! [`LANES`] contacts. The order of operations within a contact is the same, so the bits are too.
 
+use crate::members::state::LANES;
+use crate::members::state::Layout;
+use crate::members::state::POSITION;
+use crate::members::state::VELOCITY;
+use crate::members::steps::BearingSteps;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::ch2_housing::bearing::contact::{
     RaceContact, RaceLaw, damped_load, normal_load, race_contact,
 };
@@ -16,10 +23,7 @@ use crate::members::contact_traction::{traction_lanes, traction_plain};
 use crate::members::raceway_profile;
 use crate::members::raceway_profile::{ProfiledPair, RacewayProfiles};
 use crate::members::rigid_body::BodyKinematics;
-use crate::members::state::{LANES, Layout, POSITION, VELOCITY};
-use crate::members::steps::BearingSteps;
-use crate::plan::Stage;
-use crate::plan::counts::Counts;
+use serde::{Deserialize, Serialize};
 
 /// Laws that all contacts share.
 #[derive(Clone, Debug)]
@@ -120,7 +124,7 @@ impl ContactTable {
 }
 
 /// Work counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     pub evaluations: u64,
     pub distance_tests: u64,
@@ -134,23 +138,6 @@ pub struct Work {
     pub factorisations: u64,
     /// Attempts rejected by the error control.
     pub rejected_steps: u64,
-}
-
-impl Work {
-    /// All counts in the order of files.
-    pub fn counts(&mut self) -> [&mut u64; 9] {
-        [
-            &mut self.evaluations,
-            &mut self.distance_tests,
-            &mut self.loaded_contacts,
-            &mut self.slices,
-            &mut self.pocket_tests,
-            &mut self.guide_tests,
-            &mut self.ball_tests,
-            &mut self.factorisations,
-            &mut self.rejected_steps,
-        ]
-    }
 }
 
 /// Slopes of traction in addition to forces, or not.

@@ -6,7 +6,8 @@
 //! modes.
 
 use crate::members::shaft_modes::ShapesError;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use crate::numeric::ritz;
+use nalgebra::{DMatrix, DVector};
 
 /// Mass and stiffness, and rigid motions that are orthogonal under the mass.
 pub(crate) struct FreeBody<'m> {
@@ -34,7 +35,7 @@ pub struct Cut {
     pub share: f64,
 }
 
-/// Static responses that differ by less than this fraction from combinations of the others are dropped.
+/// Static responses of unit mass of which less than this fraction differs from combinations of the others are dropped.
 const DEPENDENT: f64 = 1e-10;
 
 impl FreeBody<'_> {
@@ -133,46 +134,22 @@ pub(crate) fn lowest(
     let factor = shifted.cholesky()?.unpack();
     let half = factor.solve_lower_triangular(mass)?;
     let inverse = factor.solve_lower_triangular(&half.transpose())?;
-    let eigen = ((&inverse + inverse.transpose()) * 0.5).symmetric_eigen();
-    let mut order: Vec<usize> = (0..mass.nrows()).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    order.truncate(modes);
-    let mut shapes = DMatrix::zeros(mass.nrows(), order.len());
-    let mut squares = Vec::with_capacity(order.len());
-    for (column, &mode) in order.iter().enumerate() {
-        let value = eigen.eigenvalues[mode];
-        squares.push(1.0 / value - shift);
-        let shape = factor.tr_solve_lower_triangular(&eigen.eigenvectors.column(mode))?;
-        shapes.set_column(column, &(shape / value.sqrt()));
+    let descending = |a: &f64, b: &f64| b.total_cmp(a);
+    let (values, vectors) = ritz::sorted((&inverse + inverse.transpose()) * 0.5, descending);
+    let count = modes.min(values.len());
+    let mut shapes = factor.tr_solve_lower_triangular(&vectors.columns(0, count))?;
+    for (mut shape, value) in shapes.column_iter_mut().zip(&values) {
+        shape /= value.sqrt();
     }
-    Some((shapes, squares))
+    Some((shapes, values.iter().take(count).map(|value| 1.0 / value - shift).collect()))
 }
 
 /// Combinations of `answers` (columns of amplitudes of modes of these frequencies) that are orthogonal under mass and
 /// stiffness, and their frequencies.
 fn independent(answers: &DMatrix<f64>, frequencies: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
-    let mass = answers.transpose() * answers;
-    if answers.is_empty() {
-        return (Vec::new(), DMatrix::zeros(answers.nrows(), 0));
-    }
-    let gram = SymmetricEigen::new(mass);
-    let most = gram.eigenvalues.max();
-    let used: Vec<usize> =
-        (0..gram.eigenvalues.len()).filter(|i| gram.eigenvalues[*i] > DEPENDENT * most).collect();
-    if used.is_empty() {
-        return (Vec::new(), DMatrix::zeros(answers.nrows(), 0));
-    }
-    let basis = DMatrix::from_fn(answers.ncols(), used.len(), |i, j| {
-        gram.eigenvectors[(i, used[j])] / gram.eigenvalues[used[j]].sqrt()
-    });
-    let basis = answers * basis;
+    let basis = answers * ritz::independent(answers.transpose() * answers, |_| 1.0, DEPENDENT);
     let springs = DVector::from_fn(frequencies.len(), |k, _| frequencies[k] * frequencies[k]);
     let stiffness = basis.transpose() * DMatrix::from_diagonal(&springs) * &basis;
-    let eigen = SymmetricEigen::new(stiffness);
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    let frequencies = order.iter().map(|i| eigen.eigenvalues[*i].sqrt()).collect();
-    let chosen =
-        DMatrix::from_fn(order.len(), order.len(), |i, j| eigen.eigenvectors[(i, order[j])]);
-    (frequencies, basis * chosen)
+    let (squares, vectors) = ritz::sorted(stiffness, f64::total_cmp);
+    (squares.into_iter().map(f64::sqrt).collect(), basis * vectors)
 }

@@ -9,7 +9,7 @@ use crate::ch2_housing::elastomer::Elastomer;
 use crate::members::connection::{MaxwellElement, SpringDashpot};
 use crate::mesh::TetMesh;
 use crate::mesh::generate::Part;
-use crate::solids::rubber::error::RubberError;
+use crate::solids::error::SolidError;
 use crate::solids::rubber::harmonic::ComplexStiffness;
 use crate::solids::rubber::sleeve::{SleeveMotion, sleeve_stiffness};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -38,10 +38,10 @@ pub fn bushing_spring(
     part: Part,
     material: &Elastomer,
     fastest: f64,
-) -> Result<BushingSpring, RubberError> {
+) -> Result<BushingSpring, SolidError> {
     let in_range = fastest > 0.0 && fastest.is_finite();
     if !in_range {
-        return Err(RubberError::Option { what: "fastest pulsation", value: fastest });
+        return Err(SolidError::Option { what: "fastest pulsation", value: fastest });
     }
     let gain: f64 = material.maxwell.iter().map(|term| term.gamma).sum();
     let slowest_term = material.maxwell.iter().map(|term| term.tau).fold(0.0, f64::max);

@@ -11,6 +11,7 @@ use crate::members::state::BodyState;
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A race at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -155,7 +156,7 @@ pub fn kinematics_at_mount(body: &BodyKinematics, mount: &Mount) -> BodyKinemati
 }
 
 /// Force and moment on a body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
     /// Contacts, gravity, rotating load, unbalance; N, inertial axes.
     pub force: Vec3,

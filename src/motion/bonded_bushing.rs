@@ -3,6 +3,7 @@
 //! The bodies prescribe the displacements of the sleeve nodes and have their mass. Forces of the elements on these
 //! nodes are summed over a coupling step and applied to the bodies, as those of a housing fit.
 
+use crate::plan::counts::Counts;
 use crate::assembly::lists::Assembly;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, scale, sub};
 use crate::members::connection::{Connection, Law};
@@ -11,10 +12,9 @@ use crate::members::state::BodyState;
 use crate::motion::race_in_bore::{in_free_motion, mean_over, work_on_way};
 use crate::motion::simulation::Simulation;
 use crate::numeric::profile::Profile;
-use crate::plan::counts::Counts;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::Prescribed;
-use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::explicit::RubberBody;
 use crate::solids::rubber::harmonic::complex_stiffness;
 use crate::solids::rubber::measures::RubberLedger;
@@ -57,7 +57,7 @@ impl BondedPart<'_> {
     /// # Errors
     ///
     /// Rubber without an equilibrium.
-    pub(crate) fn measure(&mut self) -> Result<(), RubberError> {
+    pub(crate) fn measure(&mut self) -> Result<(), SolidError> {
         // The first iteration vector is the solution already.
         const SETTLED: f64 = 1e-6;
         let mut model = match self.elements {
@@ -258,7 +258,7 @@ impl<'p> BondedBushing<'p> {
     pub(crate) fn new(
         part: BondedPart<'p>,
         simulation: &Simulation,
-    ) -> Result<BondedBushing<'p>, RubberError> {
+    ) -> Result<BondedBushing<'p>, SolidError> {
         let elements = part.elements.clone();
         let mut bushing = BondedBushing::unmoved(part, simulation)?;
         let now = || bushing.sleeves.iter();
@@ -288,7 +288,7 @@ impl<'p> BondedBushing<'p> {
     pub(crate) fn unmoved(
         part: BondedPart<'p>,
         simulation: &Simulation,
-    ) -> Result<BondedBushing<'p>, RubberError> {
+    ) -> Result<BondedBushing<'p>, SolidError> {
         let second = usize::from(part.sleeves[1].body == part.spring.ends[1].body);
         let sleeves = part.sleeves.map(|sleeve| SleeveNow::new(sleeve, simulation));
         let (rubber, most) = match part.elements {
@@ -357,7 +357,7 @@ impl<'p> BondedBushing<'p> {
 
     /// Takes the steps of a coupling step, with the bodies extrapolated. Explicit steps end half a step after the time
     /// of the bodies, implicit ones half a step before it.
-    pub(crate) fn take_coupling_step(&mut self) -> Result<(), RubberError> {
+    pub(crate) fn take_coupling_step(&mut self) -> Result<(), SolidError> {
         for k in 0..self.steps {
             let after = (k as f64 + 0.5) * self.step;
             self.step_to(after)?;
@@ -365,7 +365,7 @@ impl<'p> BondedBushing<'p> {
         Ok(())
     }
 
-    fn step_to(&mut self, after: f64) -> Result<(), RubberError> {
+    fn step_to(&mut self, after: f64) -> Result<(), SolidError> {
         let (step, sleeves) = (self.step, &mut self.sleeves);
         match &mut self.rubber {
             BondedRubber::Explicit(solid) => {

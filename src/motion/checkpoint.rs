@@ -3,22 +3,23 @@
 use crate::assembly::lists::Assembly;
 use crate::assembly::places::Places;
 use crate::members::contacts::Work;
-use crate::members::state::Layout;
 use crate::motion::energy_ledger::Balance;
 use crate::motion::error_control::Memory;
 use crate::motion::extremes::Extremes;
 use crate::motion::simulation::{RunOptions, Simulation, SimulationError, Stepping};
 use crate::motion::stability::StepLimit;
 use crate::motion::step_watch::StepWatch;
+use serde::{Deserialize, Serialize};
 
-/// A simulation at the end of a step, as plain numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A simulation at the end of a step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// s.
     pub time: f64,
     pub steps: u64,
     /// s.
     pub step_size: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<StepLimit>,
     pub step_watch: StepWatch,
     /// Of each bearing.
@@ -29,15 +30,8 @@ pub struct Checkpoint {
     pub balance: Balance,
     pub work: Work,
     /// `None` without error control.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub control: Option<Memory>,
-}
-
-impl Checkpoint {
-    /// Returns whether its lists have the lengths of the problem.
-    pub fn fits(&self, assembly: &Assembly) -> bool {
-        let layouts = Layout::of(assembly);
-        self.state.len() == Places::of(assembly).state_len() && self.extremes.len() == layouts.len()
-    }
 }
 
 impl Simulation {
@@ -69,14 +63,14 @@ impl Simulation {
     ///
     /// # Panics
     ///
-    /// If the checkpoint does not [fit](Checkpoint::fits) the problem.
+    /// If the checkpoint has another number of state entries.
     pub fn from_checkpoint(
         assembly: impl Into<Assembly>,
         options: RunOptions,
         checkpoint: &Checkpoint,
     ) -> Result<Simulation, SimulationError> {
         let assembly = assembly.into();
-        assert!(checkpoint.fits(&assembly), "a checkpoint of another problem");
+        assert_eq!(checkpoint.state.len(), Places::of(&assembly).state_len());
         let stepping = match options.stepping {
             Stepping::Accuracy(_) => options.stepping,
             Stepping::Fixed(_) | Stepping::FractionOfLimit(_) => {

@@ -2,7 +2,8 @@
 
 use crate::assembly::lists::Assembly;
 use crate::kinematics::vec3::Vec3;
-use crate::motion::bonded_bushing::{BondedBushing, BondedPart};
+use crate::members::rigid_body::Wrench;
+use crate::motion::bonded_bushing::{BondedBushing, BondedPart, BondedRubber, SleeveNow};
 use crate::motion::bore_friction::NodeSpring;
 use crate::motion::checkpoint::Checkpoint;
 use crate::motion::coupling::{CoupledMotion, CouplingError, CouplingOptions, SolidPart};
@@ -12,23 +13,25 @@ use crate::motion::explicit_solid::{SteppedSolid, seated};
 use crate::motion::race_in_bore::{Growth, Seat};
 use crate::motion::simulation::Simulation;
 use crate::solids::checkpoint::SolidCheckpoint;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid};
+use crate::solids::rubber::checkpoint::RubberCheckpoint;
 use crate::solids::step_limit::SolidStepLimit;
+use serde::{Deserialize, Serialize};
 
-/// State at the end of a coupling step, as plain numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// State at the end of a coupling step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CouplingCheckpoint {
     pub simulation: Checkpoint,
     pub solids: Vec<SteppedCheckpoint>,
-    /// [`BondedBushing::numbers`] of each bushing.
-    pub bushings: Vec<Vec<f64>>,
+    pub bushings: Vec<BushingCheckpoint>,
     pub exchanges: u64,
     /// Initial energy in the ledger, J.
     pub first: f64,
 }
 
 /// A solid and its housing fits.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SteppedCheckpoint {
     pub solid: SolidCheckpoint,
     pub seats: Vec<SeatCheckpoint>,
@@ -36,7 +39,7 @@ pub struct SteppedCheckpoint {
     pub attached: Vec<f64>,
 }
 
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SeatCheckpoint {
     /// Impulse on the race since the start, N·s.
     pub impulse: Vec3,
@@ -45,11 +48,12 @@ pub struct SeatCheckpoint {
     pub growth: Growth,
     pub tested: u64,
     pub sorts: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionCheckpoint>,
 }
 
 /// History of the friction of a housing fit.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionCheckpoint {
     /// Nodes in contact in the last step, ascending.
     pub springs: Vec<NodeSpring>,
@@ -58,8 +62,73 @@ pub struct FrictionCheckpoint {
     pub load_work: f64,
 }
 
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BushingCheckpoint {
+    /// Longest step of the rubber, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub most: Option<f64>,
+    pub sleeves: [SleeveCheckpoint; 2],
+    pub rubber: RubberInBushing,
+}
+
+/// A sleeve, and the motion of its body at the beginning of the coupling step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SleeveCheckpoint {
+    pub loads: [Wrench; 2],
+    pub velocity: Vec3,
+    pub spin: Vec3,
+    pub work: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum RubberInBushing {
+    Explicit(Box<SolidCheckpoint>),
+    Implicit(Box<RubberCheckpoint>),
+}
+
+impl BondedBushing<'_> {
+    pub fn checkpoint(&self) -> BushingCheckpoint {
+        let of_sleeve = |now: &SleeveNow| SleeveCheckpoint {
+            loads: now.loads,
+            velocity: now.from.velocity,
+            spin: now.from.spin,
+            work: now.work,
+        };
+        BushingCheckpoint {
+            most: self.most,
+            sleeves: self.sleeves.each_ref().map(of_sleeve),
+            rubber: match &self.rubber {
+                BondedRubber::Explicit(solid) => {
+                    RubberInBushing::Explicit(Box::new(solid.checkpoint()))
+                }
+                BondedRubber::Implicit(solid) => {
+                    RubberInBushing::Implicit(Box::new(solid.checkpoint()))
+                }
+            },
+        }
+    }
+
+    /// Continues in coupling steps of this length (s).
+    fn restore(&mut self, coupling_step: f64, kept: &BushingCheckpoint) -> Result<(), SolidError> {
+        self.most = kept.most;
+        self.step_in(coupling_step);
+        for (now, kept) in self.sleeves.iter_mut().zip(&kept.sleeves) {
+            (now.loads, now.work) = (kept.loads, kept.work);
+            (now.from.velocity, now.from.spin) = (kept.velocity, kept.spin);
+        }
+        match (&mut self.rubber, &kept.rubber) {
+            (BondedRubber::Explicit(solid), RubberInBushing::Explicit(kept)) => solid.restore(kept),
+            (BondedRubber::Implicit(solid), RubberInBushing::Implicit(kept)) => {
+                solid.restore(kept)?;
+            }
+            _ => panic!("a checkpoint of another kind of bushing"),
+        }
+        Ok(())
+    }
+}
+
 /// Step sizes chosen at the start.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CouplingSteps {
     /// Coupling step, s.
     pub coupling_step: f64,
@@ -94,7 +163,7 @@ impl<'p> CoupledMotion<'p> {
                 _ => Vec::new(),
             };
         }
-        checkpoint.bushings = self.bushings.iter().map(BondedBushing::numbers).collect();
+        checkpoint.bushings = self.bushings.iter().map(BondedBushing::checkpoint).collect();
         checkpoint.exchanges = self.exchanges;
         checkpoint.first = self.first;
     }
@@ -148,11 +217,11 @@ impl<'p> CoupledMotion<'p> {
         for (part, kept) in bushings.into_iter().zip(&checkpoint.bushings) {
             let name = part.name.clone();
             let made = BondedBushing::unmoved(part, &simulation);
-            let mut bushing = made.map_err(|source| CouplingError::Bushing { name, source })?;
-            bushing
-                .restore(coupling_steps.coupling_step, kept)
-                .expect("as many numbers as the bushing left");
-            on_rubber.push(bushing);
+            let restored = made.and_then(|mut bushing| {
+                bushing.restore(coupling_steps.coupling_step, kept)?;
+                Ok(bushing)
+            });
+            on_rubber.push(restored.map_err(|source| CouplingError::Bushing { name, source })?);
         }
         let mut exchange =
             CoupledMotion::of(simulation, solids, on_rubber, coupling_steps.coupling_step);

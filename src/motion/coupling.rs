@@ -22,8 +22,8 @@ use crate::motion::simulation::{RunOptions, Simulation, SimulationError, Snapsho
 use crate::plan::Stage;
 use crate::plan::counts::{Counts, StageCounts};
 use crate::solids::energy::SolidLedger;
-use crate::solids::model::{SolidError, SolidModel};
-use crate::solids::rubber::error::RubberError;
+use crate::solids::error::SolidError;
+use crate::solids::model::SolidModel;
 use crate::solids::threads::WorkerPool;
 use thiserror::Error;
 
@@ -82,7 +82,7 @@ pub enum CouplingError {
     #[error("{}{source}", of_solid(name))]
     Solid { name: Option<String>, source: SolidError },
     #[error("bushing {name}: {source}")]
-    Bushing { name: String, source: RubberError },
+    Bushing { name: String, source: SolidError },
     #[error("there is no static equilibrium to start from: {0}")]
     Start(#[from] StaticsError),
     #[error(

@@ -7,9 +7,10 @@ use crate::kinematics::vec3::{Vec3, dot};
 use crate::members::state::{POSITION, SPIN, VELOCITY};
 use crate::members::unbalance::{bent_of, energies};
 use crate::motion::system::System;
+use serde::{Deserialize, Serialize};
 
 /// Energy at one instant, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     pub kinetic: f64,
     /// Stored in ball–race contacts.

@@ -5,13 +5,14 @@ use crate::members::state::LEDGER;
 use crate::motion::energy::Energy;
 use crate::motion::simulation::{Integrator, RunOptions, SimulationError, Stepping};
 use crate::motion::system::System;
+use serde::{Deserialize, Serialize};
 
 /// Steps of Runge–Kutta, each a fraction of the shortest period, between two checks of the ledger. Other integrators
 /// are checked after each step.
 const CHECK_EVERY: u64 = 16;
 
 /// Energy balance since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
     pub first: Energy,
     /// Entries of the ledger at the start, J.
@@ -23,7 +24,7 @@ pub struct Balance {
 }
 
 /// Energy exchanged with the contacts, as seen at the checks, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactTurnover {
     pub sum: f64,
     /// Contact energy at the last check.

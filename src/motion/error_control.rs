@@ -11,6 +11,7 @@ use crate::members::bearing::Bearing;
 use crate::members::flexible_shaft::{ElasticShaft, Section};
 use crate::members::state::{BODY, LANES, Layout, ORIENTATION, POSITION, SPIN, VELOCITY};
 use crate::motion::system::System;
+use serde::{Deserialize, Serialize};
 
 /// An attempted step: the new state and its estimated error.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +38,7 @@ const SHORTEST: f64 = 0.2;
 const LONGEST: f64 = 2.5;
 
 /// Memory of the error control from step to step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
     /// Scale of displacements: largest overlap so far, m.
     pub displacement: f64,

@@ -9,8 +9,8 @@ use crate::motion::simulation::Simulation;
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
 use crate::solids::energy::SolidLedger;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
-use crate::solids::model::SolidError;
 use crate::solids::tet4_blocks::Node;
 
 /// A solid in explicit steps, its housing fits, its attachments if it is a shaft, its contacts if it is a cage.

@@ -2,9 +2,10 @@
 
 use crate::kinematics::vec3::{dot, norm, sub};
 use crate::motion::system::System;
+use serde::{Deserialize, Serialize};
 
 /// A largest value, the ball it belongs to, counted from 0, and its time, s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
     pub value: f64,
     pub ball: usize,
@@ -24,7 +25,7 @@ impl Extreme {
 const RELEVANT_LOAD: f64 = 0.01;
 
 /// Extremes of the contacts with one race.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RaceExtremes {
     /// Normal load, N.
     pub load: Extreme,
@@ -37,7 +38,7 @@ pub struct RaceExtremes {
 }
 
 /// Extremes since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Extremes {
     /// Inner, outer.
     pub races: [RaceExtremes; 2],
@@ -93,41 +94,5 @@ impl Extremes {
                 }
             }
         }
-    }
-
-    /// Plain numbers in a fixed order.
-    pub fn to_numbers(&self) -> Vec<f64> {
-        let of = |e: &Extreme| [e.value, e.ball as f64, e.time];
-        let races = self.races.iter().flat_map(|race| {
-            let all = [of(&race.load), of(&race.edge), of(&race.reversed)];
-            all.into_iter().flatten().chain([race.edge_angle])
-        });
-        let others = [&self.farthest, &self.apart, &self.between_balls];
-        races.chain(others.into_iter().flat_map(of)).collect()
-    }
-
-    /// Extremes of several bearings, from [`Extremes::to_numbers`] of each; `None` if the count is wrong.
-    pub fn all_from_numbers(numbers: &[f64]) -> Option<Vec<Extremes>> {
-        numbers.chunks(Extremes::default().to_numbers().len()).map(Extremes::from_numbers).collect()
-    }
-
-    /// From [`Extremes::to_numbers`]; `None` if the count is wrong.
-    pub fn from_numbers(numbers: &[f64]) -> Option<Extremes> {
-        let mut left = numbers.iter().copied();
-        let mut next = || left.next();
-        let mut extremes = Extremes::default();
-        let one = |next: &mut dyn FnMut() -> Option<f64>| -> Option<Extreme> {
-            Some(Extreme { value: next()?, ball: next()? as usize, time: next()? })
-        };
-        for race in &mut extremes.races {
-            race.load = one(&mut next)?;
-            race.edge = one(&mut next)?;
-            race.reversed = one(&mut next)?;
-            race.edge_angle = next()?;
-        }
-        extremes.farthest = one(&mut next)?;
-        extremes.apart = one(&mut next)?;
-        extremes.between_balls = one(&mut next)?;
-        left.next().is_none().then_some(extremes)
     }
 }

@@ -6,7 +6,6 @@ pub mod block_arrow_solids;
 pub mod block_arrow_terms;
 pub mod body_rates;
 pub mod bonded_bushing;
-pub mod bonded_bushing_state;
 pub mod bore_friction;
 pub mod checkpoint;
 pub mod clocked;

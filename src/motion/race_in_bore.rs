@@ -20,6 +20,7 @@ use crate::solids::contact::{moved, press};
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::tet4_blocks::Node;
 use nalgebra::{UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A race in a bore.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +46,7 @@ pub struct Seat {
 }
 
 /// Work of a growing race radius against the contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
     /// Since the start, J.
     pub work: f64,

@@ -6,16 +6,27 @@ use crate::ch2_housing::bearing::inertia::Inertia;
 use crate::members::state::{Layout, ORIENTATION, POSITION, SPIN, VELOCITY, quaternion_rate};
 use crate::motion::system::System;
 use nalgebra::{Complex, DMatrix, DVector, Quaternion, Schur};
+use serde::{Deserialize, Serialize};
 
 /// Stability limit of an explicit method.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepLimit {
     /// Largest stable step of classical Runge–Kutta, s.
     pub step: f64,
     /// The eigenvalue that limits it, 1/s.
+    #[serde(with = "ComplexParts")]
     pub eigenvalue: Complex<f64>,
     /// State entry of the rate with most kinetic energy in the mode of that eigenvalue.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<usize>,
+}
+
+/// A complex number in a state file.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Complex<f64>")]
+struct ComplexParts {
+    re: f64,
+    im: f64,
 }
 
 impl StepLimit {

@@ -5,6 +5,7 @@
 //! contact stiffness is compared every few steps, at little cost, and the Jacobian is evaluated when the limit may have
 //! come down to the step. A prescribed step is refused then; one that follows from the limit is shortened.
 
+use crate::plan::Stage;
 use crate::ch2_housing::bearing::cage::CageContact;
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
@@ -13,7 +14,7 @@ use crate::members::bearing::Bearing;
 use crate::motion::simulation::{Integrator, Simulation, SimulationError, Stepping};
 use crate::motion::stability::step_limit;
 use crate::motion::system::System;
-use crate::plan::Stage;
+use serde::{Deserialize, Serialize};
 
 /// Steps between two checks of the contacts.
 pub const CHECK_EVERY: u64 = 16;
@@ -35,7 +36,7 @@ const ROOM: f64 = 1.5;
 const DAMPED: f64 = 1.5;
 
 /// Rates of the contacts that limit the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stiffness {
     /// Largest contact stiffness over mass, 1/s².
     pub oscillation: f64,
@@ -122,9 +123,10 @@ fn stiffness_of(system: &System, set: &BallSet, bearing: &Bearing) -> Stiffness 
 }
 
 /// Limit found so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepWatch {
     /// Smallest limit found, s; `None` if nothing was stiff yet.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub smallest: Option<f64>,
     /// Largest contact rates at an evaluation of the Jacobian.
     pub stiffest: Stiffness,

@@ -12,6 +12,7 @@
 //! In both cases the next step follows from stored values, so that a resumed or extended run gives the same bits.
 
 use crate::numeric::profile::next_corner;
+use serde::{Deserialize, Serialize};
 
 /// Rounds a number to `digits` significant digits.
 ///
@@ -30,7 +31,7 @@ pub fn rounded(time: f64) -> f64 {
 }
 
 /// Output rows, corners and end of a run.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// End time of the run, s.
     pub end: f64,
@@ -41,16 +42,23 @@ pub struct Clock {
     /// Steps per row; zero with error control, where steps end at the rows' times.
     pub steps_per_row: u64,
     /// Total number of steps if only whole steps are taken; otherwise `None`.
+    #[serde(skip)]
     pub last: Option<u64>,
     /// Times of corners, ascending, s; empty if only whole steps are taken.
+    #[serde(skip)]
     pub corners: Vec<f64>,
     /// True if the step has been shortened during the run.
+    #[serde(skip)]
     pub shortened: bool,
     /// Requested time between field files, s, and rows between them; `None` without field files during the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub fields_interval: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub rows_per_fields: Option<u64>,
     /// Rows so far, and the time of the last one, s.
+    #[serde(skip)]
     pub rows: u64,
+    #[serde(skip)]
     pub row_time: f64,
 }
 

@@ -6,8 +6,9 @@
 
 use crate::output::atomic::remove_partials;
 use crate::output::fields::FOLDER as FIELDS;
-use crate::output::json;
+use crate::output::json::{self, JsonError};
 use crate::output::pack::{MANIFEST, RESOLVED};
+use crate::output::state::{self, STATE};
 use serde_json::Value;
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -192,19 +193,19 @@ pub fn content(folder: &Path) -> Result<FolderContent, FolderError> {
         file: folder.join(name),
         reason: reason.to_string(),
     };
-    let record = |name: &str| -> Result<Option<Value>, FolderError> {
+    let record = |name: &str, read: fn(&Path) -> Result<Value, JsonError>| {
         let file = folder.join(name);
         match fs::symlink_metadata(&file) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            _ => match json::read(&file) {
+            _ => match read(&file) {
                 Ok(record) if is_own(&record) => Ok(Some(record)),
                 Ok(_) => Err(foreign(name, "it names another program, or none")),
                 Err(error) => Err(foreign(name, &error.to_string())),
             },
         }
     };
-    let (state, summary) = (record("state.json")?, record("summary.json")?);
-    let sweep = record("sweep.json")?;
+    let state = record(STATE, state::head)?;
+    let (summary, sweep) = (record("summary.json", json::read)?, record("sweep.json", json::read)?);
     // A partial pack has no manifest yet.
     let manifest = json::read(&folder.join(MANIFEST)).is_ok_and(|manifest| is_own(&manifest));
     if manifest || (summary.is_some() && there(RESOLVED)) {

@@ -10,7 +10,6 @@
 //! - [`pictures`]: plots of a run; [`plots`]: SVG pictures from plain data
 //! - [`folder`]: exclusive access to a results folder
 //! - [`json`], [`npy`]: file readers with limits on memory
-//! - [`journal`]: reading and writing of state files
 //! - [`mod@spectrum`]: amplitude spectra of time series
 //! - [`compare`]: comparison of a candidate with a reference
 //! - [`visible`]: escaping of text for a terminal; [`amounts`]: memory sizes as text
@@ -27,7 +26,7 @@
 //! | `bore.csv` | for a housing: one row per node of the bore |
 //! | `fields.pvd`, `fields/*.vtu` | for a solid: displacement, stress, contact force over time |
 //! | `*.svg` | the requested plots |
-//! | `state.json`, `state-N.npy` | the state to resume from |
+//! | `state.json` | the state to resume from |
 //!
 //! Lengths in m, loads in N, angles in degrees, speeds in rad/s.
 pub mod acquisition;
@@ -39,7 +38,6 @@ pub mod defect_lines;
 pub mod ensemble;
 pub mod fields;
 pub mod folder;
-pub mod journal;
 pub mod json;
 pub mod natural_modes;
 pub mod npy;

@@ -2,14 +2,30 @@
 //! contact.
 
 use crate::plan::{Stage, Subject};
+use serde::{Deserialize, Serialize};
 
 /// Counts of one subject's stages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "Vec<u64>", try_from = "Vec<u64>")]
 pub struct Counts([u64; Stage::COUNT]);
 
 impl Default for Counts {
     fn default() -> Counts {
         Counts([0; Stage::COUNT])
+    }
+}
+
+impl From<Counts> for Vec<u64> {
+    fn from(counts: Counts) -> Vec<u64> {
+        counts.0.to_vec()
+    }
+}
+
+impl TryFrom<Vec<u64>> for Counts {
+    type Error = &'static str;
+
+    fn try_from(counts: Vec<u64>) -> Result<Counts, &'static str> {
+        counts.try_into().map(Counts).map_err(|_| "as many counts as there are stages")
     }
 }
 
@@ -35,7 +51,7 @@ impl Counts {
 }
 
 /// Counts of all stages, in the lists of an assembly.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StageCounts {
     pub whole: Counts,
     pub bearings: Vec<Counts>,

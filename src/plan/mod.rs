@@ -217,27 +217,6 @@ pub enum Subject {
     Seat(usize),
 }
 
-impl Subject {
-    /// Number of the list and index, as files have them.
-    pub fn numbers(self) -> [usize; 2] {
-        match self {
-            Subject::Whole => [0, 0],
-            Subject::Bearing(at) => [1, at],
-            Subject::Body(at) => [2, at],
-            Subject::Solid(at) => [3, at],
-            Subject::Seat(at) => [4, at],
-        }
-    }
-
-    /// `None` if there is no such list.
-    pub fn from_numbers([list, at]: [usize; 2]) -> Option<Subject> {
-        let of =
-            [|_| Subject::Whole, Subject::Bearing, Subject::Body, Subject::Solid, Subject::Seat]
-                as [fn(usize) -> Subject; 5];
-        of.get(list).map(|of| of(at))
-    }
-}
-
 /// A stage of a subject: whether it is done, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {

@@ -19,6 +19,7 @@ use crate::members::mount::Mount;
 use crate::members::reduced_solid::{ModalLoad, ReducedSolid, Surface, SurfaceNode};
 use crate::numeric::dense::DenseSymmetric;
 use crate::numeric::profile::Profile;
+use crate::numeric::ritz;
 use crate::numeric::sparse::FactorError;
 use crate::plan::counts::Counts;
 use crate::reduction::load_patterns::{LoadPatterns, NOTHING_NEW, patterns};
@@ -27,7 +28,7 @@ use crate::solids::condensation::{CondensedBore, beyond_normals, rim};
 use crate::solids::model::SolidModel;
 use crate::solids::modes::{Mode, ModeError, ModeOptions, Wanted};
 use crate::solids::tangent::MassMatrix;
-use nalgebra::{DMatrix, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, Vector3};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
@@ -382,9 +383,6 @@ fn own_loads(model: &SolidModel) -> Vec<(NodalForces, Option<Profile>)> {
 /// Frequencies (rad/s, ascending) and modes of unit modal mass spanned by the responses.
 pub(crate) fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)> {
     let size = answers.len();
-    if size == 0 {
-        return Vec::new();
-    }
     let energy = DMatrix::from_fn(size, size, |i, j| {
         let of = |i: usize, j: usize| work(&answers[i].forces, &answers[j].shape);
         0.5 * (of(i, j) + of(j, i))
@@ -401,19 +399,14 @@ pub(crate) fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)>
         .map(|i| if energy[(i, i)] > 0.0 { 1.0 / energy[(i, i)].sqrt() } else { 0.0 })
         .collect();
     let scaled = DMatrix::from_fn(size, size, |i, j| unit[i] * energy[(i, j)] * unit[j]);
-    let first = SymmetricEigen::new(scaled);
-    let new: Vec<usize> = (0..size).filter(|k| first.eigenvalues[*k] > NOTHING_NEW).collect();
     // Columns of unit energy.
-    let basis = DMatrix::from_fn(size, new.len(), |i, k| {
-        unit[i] * first.eigenvectors[(i, new[k])] / first.eigenvalues[new[k]].sqrt()
-    });
+    let basis = ritz::independent(scaled, |i| unit[i], NOTHING_NEW);
     let projected = basis.transpose() * inertia * &basis;
-    let second = SymmetricEigen::new(0.5 * (&projected + projected.transpose()));
-    let mut order: Vec<usize> = (0..new.len()).collect();
-    order.sort_by(|a, b| second.eigenvalues[*b].total_cmp(&second.eigenvalues[*a]));
-    let shape = |k: usize| {
-        let per_root = 1.0 / second.eigenvalues[k].sqrt();
-        let shares = &basis * second.eigenvectors.column(k) * per_root;
+    let descending = |a: &f64, b: &f64| b.total_cmp(a);
+    let (values, vectors) = ritz::sorted(0.5 * (&projected + projected.transpose()), descending);
+    let shape = |(k, value): (usize, f64)| {
+        let per_root = 1.0 / value.sqrt();
+        let shares = &basis * vectors.column(k) * per_root;
         let mut shape = vec![[0.0; 3]; mass.len()];
         for (answer, share) in answers.iter().zip(shares.iter()) {
             for (to, from) in shape.iter_mut().zip(&answer.shape) {
@@ -422,5 +415,5 @@ pub(crate) fn combine(answers: &[Answer], mass: &[f64]) -> Vec<(f64, Vec<Vec3>)>
         }
         (per_root, shape)
     };
-    order.into_iter().map(shape).collect()
+    values.into_iter().enumerate().map(shape).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::scene::build::about::About;
 use crate::scene::build::solid::SolidSetupError;
-use crate::solids::model::SolidError;
+use crate::solids::error::SolidError;
 use std::ops::RangeInclusive;
 use thiserror::Error;
 

@@ -2,9 +2,10 @@
 
 use crate::solids::explicit::{ExplicitSolid, SolidWork};
 use crate::solids::tet4_blocks::Node;
+use serde::{Deserialize, Serialize};
 
 /// A solid at the end of a step, as plain numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolidCheckpoint {
     /// s.
     pub time: f64,

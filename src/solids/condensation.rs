@@ -4,15 +4,15 @@
 //! needs the outward displacement of node i under an outward force on node j: a dense compliance, one solve of the
 //! sparse stiffness for each node.
 
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::ch2_housing::bore_contact::{ContactNode, Frame};
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{angles, quaternion};
 use crate::kinematics::vec3::{Vec3, add, dot, scale};
 use crate::numeric::dense::DenseSymmetric;
-use crate::numeric::sparse::{Factor, FactorError, Memory};
-use crate::plan::Stage;
-use crate::plan::counts::Counts;
-use crate::solids::equilibrium_error::{Pivot, free_text};
+use crate::numeric::sparse::{Factor, Memory};
+use crate::solids::error::{SolidError, at_rest};
 use crate::solids::memory::condensed;
 use crate::solids::model::SolidModel;
 use crate::solids::modes::{ModeError, ModeOptions, Modes, modes_of_fixed};
@@ -59,9 +59,7 @@ const BLOCK: usize = 32;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CondenseError {
     #[error(transparent)]
-    Factor(FactorError),
-    #[error("{}", free_text(pivot))]
-    Free { pivot: Pivot },
+    Solid(SolidError),
     #[error(
         "none of the {bore} bore nodes is within the width of the race; check the width and position of the race"
     )]
@@ -223,11 +221,9 @@ pub fn condense_over(
     let Picked { frame, nodes, sizes } = pick(model, &unknowns, bore, reach)?;
     let mut matrix = pattern(&model.problem, &unknowns);
     stiffness(model, &unknowns, &vec![[0.0; 3]; model.mass.len()], &mut matrix);
-    let factor = unknowns.factor(&matrix).map_err(|error| match error {
-        FactorError::NotPositiveDefinite { pivot } => {
-            CondenseError::Free { pivot: Pivot::of(model, &unknowns, pivot) }
-        }
-        other => CondenseError::Factor(other),
+    let factor = unknowns.factor(&matrix).map_err(|error| {
+        let error = at_rest(error, &model.problem.nodes, &model.labels, &unknowns);
+        CondenseError::Solid(error)
     })?;
     drop(matrix);
 

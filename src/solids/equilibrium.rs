@@ -7,9 +7,9 @@ use crate::numeric::sparse::{Factor, FactorError, SymmetricMatrix};
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
 use crate::solids::contact::CylinderContact;
-pub use crate::solids::equilibrium_error::EquilibriumError;
-use crate::solids::equilibrium_error::Pivot;
+use crate::solids::error::{Pivot, SolidError, StepFailure, at_rest};
 use crate::solids::model::{Prescribed, SolidModel, centre};
+use crate::solids::newton::{Convergence, Unbalanced, add_solution, converge};
 use crate::solids::stress::first_inverted;
 use crate::solids::tangent::{MassMatrix, PRESCRIBED, Unknowns, add_at_node, pattern, stiffness};
 use crate::solids::trust::{Placed, farthest, size};
@@ -67,7 +67,7 @@ pub fn equilibrium(
     model: &SolidModel,
     t: f64,
     options: &EquilibriumOptions,
-) -> Result<Equilibrium, EquilibriumError> {
+) -> Result<Equilibrium, SolidError> {
     equilibrium_over(model, Unknowns::new(model), t, options)
 }
 
@@ -81,7 +81,7 @@ pub fn equilibrium_over(
     unknowns: Unknowns,
     t: f64,
     options: &EquilibriumOptions,
-) -> Result<Equilibrium, EquilibriumError> {
+) -> Result<Equilibrium, SolidError> {
     Ok(solve(Newton::new(model, unknowns, t, options))?.finish())
 }
 
@@ -106,7 +106,7 @@ pub fn equilibrium_in_contact(
     contact: &CylinderContact,
     start: Option<&[Vec3]>,
     options: &EquilibriumOptions,
-) -> Result<ContactEquilibrium, EquilibriumError> {
+) -> Result<ContactEquilibrium, SolidError> {
     let mut newton = Newton::new(model, Unknowns::new(model), t, options);
     if let Some(start) = start {
         newton.displacement.copy_from_slice(start);
@@ -118,13 +118,13 @@ pub fn equilibrium_in_contact(
     Ok(ContactEquilibrium { solid: newton.finish(), sum, nodes })
 }
 
-fn solve(mut newton: Newton) -> Result<Newton, EquilibriumError> {
+fn solve(mut newton: Newton) -> Result<Newton, SolidError> {
     let options = newton.options;
     let (mut reached, mut step) = (0.0, 1.0);
     while reached < 1.0 {
         let wanted = f64::min(reached + step, 1.0);
         let before = newton.displacement.clone();
-        let outcome = newton.converge(wanted).and_then(|()| newton.refuse_inverted(wanted));
+        let outcome = newton.converge(wanted).and_then(|()| newton.refuse_inverted());
         let Err(error) = outcome else {
             reached = wanted;
             continue;
@@ -132,8 +132,8 @@ fn solve(mut newton: Newton) -> Result<Newton, EquilibriumError> {
         newton.displacement = before;
         // Without memory, or with a part that is free to move, smaller steps do not help.
         match &error {
-            EquilibriumError::Factor(FactorError::NoMemory { .. }) => return Err(error),
-            EquilibriumError::Factor(_) => newton.refuse_free()?,
+            SolidError::Factor(FactorError::NoMemory { .. }) => return Err(error),
+            SolidError::Factor(_) => newton.refuse_free()?,
             _ => {}
         }
         if 0.5 * step < options.smallest_load_step {
@@ -167,6 +167,9 @@ struct Newton<'a> {
     linear: Option<Placed>,
     displacement: Vec<Vec3>,
     external: Vec<[f64; 4]>,
+    /// Fraction of the loads, and residuals of the unknowns, N.
+    fraction: f64,
+    right: Vec<f64>,
     contact: Option<&'a CylinderContact>,
     /// Contact nodes of the last evaluation.
     touching: Vec<Touching>,
@@ -194,6 +197,8 @@ impl<'a> Newton<'a> {
         }
         Newton {
             matrix: pattern(&model.problem, &unknowns),
+            fraction: 0.0,
+            right: vec![0.0; unknowns.count],
             unknowns,
             factor: None,
             stale: true,
@@ -215,16 +220,12 @@ impl<'a> Newton<'a> {
     }
 
     /// Forces may balance on an inverted element, which is an invalid state.
-    fn refuse_inverted(&self, fraction: f64) -> Result<(), EquilibriumError> {
-        match first_inverted(self.model, &self.displacement) {
-            None => Ok(()),
-            Some((index, ratio)) => {
-                let at = centre(&self.model.problem, index);
-                let element = self.model.labels.element(index);
-                let poisson_ratio = self.model.problem.material.poisson_ratio();
-                Err(EquilibriumError::Inverted { fraction, element, at, ratio, poisson_ratio })
-            }
-        }
+    fn refuse_inverted(&self) -> Result<(), SolidError> {
+        first_inverted(self.model, &self.displacement).map_or(Ok(()), |(index, ratio)| {
+            let at = centre(&self.model.problem, index);
+            let element = self.model.labels.element(index);
+            Err(StepFailure::Inverted { element, at, ratio }.into())
+        })
     }
 
     /// Internal forces at the present displacements, N.
@@ -268,87 +269,49 @@ impl<'a> Newton<'a> {
         (!same, 8.0 * f64::EPSILON * lengths * stiffest)
     }
 
-    /// Newton iterations at a fraction of the load. Factors of an earlier state are kept as long as they reduce the
-    /// residual tenfold a step.
-    fn converge(&mut self, fraction: f64) -> Result<(), EquilibriumError> {
+    /// Newton iterations at a fraction of the load.
+    fn converge(&mut self, fraction: f64) -> Result<(), SolidError> {
+        self.fraction = fraction;
         for Prescribed { node, axis, profile } in &self.model.problem.prescribed {
             self.displacement[*node as usize][*axis] = fraction * profile.value(self.t);
         }
-        let mut last = f64::INFINITY;
-        let mut fresh = false;
-        for iteration in 0..=self.options.most_iterations {
-            let mut internal = self.internal();
-            let (changed, rounding) = self.add_contact(fraction, &mut internal);
-            self.stale |= changed;
-            let mut right = vec![0.0; self.unknowns.count];
-            let (mut largest, mut scale, mut finite) = (0.0f64, 0.0f64, true);
-            for (n, of) in self.unknowns.of.iter().enumerate() {
-                for i in 0..3 {
-                    scale = scale.max(internal[n][i].abs()).max(self.external[n][i].abs());
-                    if of[i] != PRESCRIBED {
-                        let unbalanced = internal[n][i] + fraction * self.external[n][i];
-                        right[of[i]] = unbalanced;
-                        // `max` would drop NaN.
-                        finite &= unbalanced.is_finite();
-                        largest = largest.max(unbalanced.abs());
-                    }
-                }
-            }
-            self.residual = if scale > 0.0 { largest / scale } else { 0.0 };
-            if finite && largest <= f64::max(self.options.tolerance * scale, rounding) {
-                return Ok(());
-            }
-            // With factors of the same state and the same contact nodes the step did not halve the residual: it is
-            // rounding.
-            let stagnates = fresh && !changed && largest > 0.5 * last;
-            if finite && stagnates && largest <= self.options.rounding * scale {
-                return Ok(());
-            }
-            let diverged = !finite || (iteration > 3 && largest > 1e3 * last);
-            if iteration == self.options.most_iterations || diverged {
-                return Err(EquilibriumError::NotConverged {
-                    fraction,
-                    residual: largest,
-                    scale,
-                    iterations: iteration,
-                    poisson_ratio: self.model.problem.material.poisson_ratio(),
-                });
-            }
-            fresh = self.stale || largest > 0.1 * last;
-            if fresh {
-                self.refactor()?;
-            }
-            last = largest;
-            self.factor.as_ref().expect("factorised above").solve(&mut right);
-            for (n, of) in self.unknowns.of.iter().enumerate() {
-                for i in 0..3 {
-                    if of[i] != PRESCRIBED {
-                        self.displacement[n][i] += right[of[i]];
-                    }
-                }
-            }
-            self.iterations += 1;
-            if self.linear.is_none() {
-                let Placed { value, at } = farthest(self.model, &self.displacement);
-                self.linear = Some(Placed { value: value / fraction, at });
-            }
-        }
-        unreachable!("the loop returns at its last iteration")
+        let EquilibriumOptions { tolerance, rounding, most_iterations, .. } = *self.options;
+        let options = Convergence { tolerance, rounding, most_iterations };
+        let serves = |newton: &Newton| !newton.stale;
+        let Unbalanced { largest, scale, .. } =
+            converge(self, &options, Newton::balance, serves, Newton::refactor, Newton::step)?;
+        self.residual = if scale > 0.0 { largest / scale } else { 0.0 };
+        Ok(())
     }
 
-    fn refactor(&mut self) -> Result<(), EquilibriumError> {
+    fn balance(&mut self) -> Result<Unbalanced, SolidError> {
+        let mut internal = self.internal();
+        let (changed, rounding) = self.add_contact(self.fraction, &mut internal);
+        self.stale |= changed;
+        let forces = [&internal[..], &self.external];
+        let found = Unbalanced::of(&self.unknowns, forces, self.fraction, &mut self.right)?;
+        Ok(Unbalanced { rounding, changed, ..found })
+    }
+
+    fn step(&mut self) {
+        self.factor.as_ref().expect("factorised before").solve(&mut self.right);
+        add_solution(&self.unknowns, &self.right, &mut self.displacement);
+        self.iterations += 1;
+        if self.linear.is_none() {
+            let Placed { value, at } = farthest(self.model, &self.displacement);
+            self.linear = Some(Placed { value: value / self.fraction, at });
+        }
+    }
+
+    fn refactor(&mut self) -> Result<(), SolidError> {
         stiffness(self.model, &self.unknowns, &self.displacement, &mut self.matrix);
         for touching in &self.touching {
             let Touching { node, stiffness, .. } = touching;
             add_at_node(&self.unknowns, node.node, stiffness, &mut self.matrix);
         }
         match &mut self.factor {
-            Some(factor) => factor.refactor(&self.matrix).map_err(EquilibriumError::Factor)?,
-            None => {
-                let factor =
-                    self.unknowns.factor(&self.matrix).map_err(EquilibriumError::Factor)?;
-                self.factor = Some(factor);
-            }
+            Some(factor) => factor.refactor(&self.matrix)?,
+            None => self.factor = Some(self.unknowns.factor(&self.matrix)?),
         }
         self.held |= self.displacement.iter().all(|u| *u == [0.0; 3]);
         self.stale = false;
@@ -357,7 +320,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Factorises the stiffness at rest, unless that has been done.
-    fn refuse_free(&mut self) -> Result<(), EquilibriumError> {
+    fn refuse_free(&mut self) -> Result<(), SolidError> {
         if self.held {
             return Ok(());
         }
@@ -365,27 +328,30 @@ impl<'a> Newton<'a> {
         let before = std::mem::replace(&mut self.displacement, rest);
         let outcome = self.refactor();
         self.displacement = before;
-        match outcome {
-            Err(EquilibriumError::Factor(FactorError::NotPositiveDefinite { pivot })) => {
-                let pivot = Pivot::of(self.model, &self.unknowns, pivot);
-                Err(EquilibriumError::Free { pivot })
-            }
+        let SolidModel { problem, labels, .. } = self.model;
+        outcome.map_err(|error| match error {
+            SolidError::Factor(error) => at_rest(error, &problem.nodes, labels, &self.unknowns),
             other => other,
-        }
+        })
     }
 
     /// Cause of the failure of the last step, from the displacements before it; at rest the body is valid.
-    fn with_cause(&self, error: EquilibriumError, reached: f64) -> EquilibriumError {
+    fn with_cause(&self, error: SolidError, reached: f64) -> SolidError {
+        let SolidModel { problem, labels, .. } = self.model;
+        let poisson_ratio = problem.material.poisson_ratio();
         match error {
-            EquilibriumError::Factor(FactorError::NotPositiveDefinite { pivot }) => {
-                EquilibriumError::TooLarge {
+            SolidError::Factor(FactorError::NotPositiveDefinite { pivot }) => {
+                SolidError::TooLarge {
                     reached,
                     moved: farthest(self.model, &self.displacement).into(),
-                    pivot: Pivot::of(self.model, &self.unknowns, pivot).into(),
+                    pivot: Pivot::of(&problem.nodes, labels, &self.unknowns, pivot).into(),
                     linear: self.linear.unwrap_or_default().into(),
                     size: size(self.model),
-                    poisson_ratio: self.model.problem.material.poisson_ratio(),
+                    poisson_ratio,
                 }
+            }
+            SolidError::Failed(failure) => {
+                SolidError::Unbalanced { fraction: self.fraction, failure, poisson_ratio }
             }
             other => other,
         }

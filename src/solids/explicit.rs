@@ -1,19 +1,21 @@
 //! Explicit steps of a solid (2.7): central differences, or Runge–Kutta as in the source; for rubber, whose stresses
 //! depend on history ([`crate::solids::rubber::explicit`]), central differences.
 
+use crate::solids::plan::SolidSteps;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::clock::whole_steps;
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
 use crate::solids::energy::{SolidEnergy, SolidLedger, strain_energy};
-use crate::solids::model::{Prescribed, SolidError, SolidModel};
-use crate::solids::plan::SolidSteps;
+use crate::solids::error::SolidError;
+use crate::solids::model::{Prescribed, SolidModel};
 use crate::solids::rigid_motion::rigid_motion;
 use crate::solids::rubber::tet_forces::{History, RubberForces};
 use crate::solids::runge_kutta::Stages;
 use crate::solids::step_limit::{SolidStepLimit, step_limit};
 use crate::solids::tet4_blocks::Node;
 use crate::solids::threads::Partition;
+use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExplicitMethod {
@@ -48,7 +50,7 @@ impl SolidStepping {
 }
 
 /// Work counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolidWork {
     pub evaluations: u64,
     pub elements: u64,

@@ -1,21 +1,18 @@
 //! A flexible solid as plain data, and its model with all constants.
 
-use crate::ch2_housing::elastomer::ElastomerError;
 use crate::ch2_housing::linear_elastic::LinearElastic;
-use crate::elements::ElementError;
 use crate::elements::tet4::Tet4;
 use crate::elements::tet10::{self, Tet10};
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::tet_mesh::Elements;
-use crate::numeric::clock::rounded;
 use crate::numeric::profile::Profile;
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
-use crate::solids::labels::{Labels, node_text};
+use crate::solids::error::SolidError;
+use crate::solids::labels::Labels;
 use crate::solids::plan::{Method, SolidSteps};
 use crate::solids::tet4_blocks::Node;
 use crate::solids::{tet4_blocks, tet10_blocks};
-use thiserror::Error;
 
 /// Damped part of the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,53 +61,6 @@ pub struct SolidProblem {
     pub gravity: Vec3,
 }
 
-/// Errors of a solid; elements and nodes by their [`Labels`], `at` undeformed, m.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum SolidError {
-    #[error("element {element} at {}: {source}; check the mesh", place(at))]
-    Element { element: u64, at: Vec3, source: ElementError },
-    #[error("density is {0} kg/m3; it must be positive and finite")]
-    Density(f64),
-    #[error("damping is {0} 1/s; it must be zero or positive, and finite")]
-    Damping(f64),
-    #[error("node {node} does not exist: the mesh has {count} nodes")]
-    NoSuchNode { node: u32, count: usize },
-    #[error(
-        "{} belongs to no element, so it has no mass; remove it from the mesh",
-        node_text(node)
-    )]
-    NoMass { node: Option<u64> },
-    #[error("axis {axis} of node {node} is prescribed; axes are 0, 1 and 2")]
-    NoSuchAxis { node: u32, axis: usize },
-    #[error("axis {axis} of node {node} is prescribed twice")]
-    PrescribedTwice { node: u32, axis: usize },
-    #[error(
-        "the step of {step:.3e} s is beyond the stability limit of {limit:.3e} s, set by element \
-         {element} at {}; take a smaller step or a coarser mesh there",
-        place(at)
-    )]
-    Step { step: f64, limit: f64, element: u64, at: Vec3 },
-    #[error(
-        "{} at {} has a value that is not finite at t = {} s, step {step}",
-        node_text(node),
-        place(at),
-        rounded(*time)
-    )]
-    NotFinite { node: Option<u64>, at: Vec3, time: f64, step: u64 },
-    #[error(
-         "element {element} at {} is inverted at t = {} s, step {step} (volume ratio {ratio:.3})",
-        place(at),
-        rounded(*time)
-    )]
-    Inverted { element: u64, at: Vec3, ratio: f64, time: f64, step: u64 },
-    #[error("element {element} at {} at t = {} s, step {step}: {source}", place(at), rounded(*time))]
-    Material { element: u64, at: Vec3, source: ElastomerError, time: f64, step: u64 },
-}
-
-pub(crate) fn place(at: &Vec3) -> String {
-    format!("({:.6}, {:.6}, {:.6}) m", at[0], at[1], at[2])
-}
-
 /// Elements in the blocks of the force loop.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Blocks {
@@ -129,6 +79,41 @@ pub struct SolidModel {
     pub mass: Vec<f64>,
     /// Reciprocal of the mass by component; zero where the displacement is prescribed.
     pub per_mass: Vec<Node>,
+}
+
+/// Takes the prescribed components from the free ones of each node, and checks the nodes of the loads.
+pub(crate) fn take_prescribed(
+    prescribed: &[Prescribed],
+    loads: &[Load],
+    free: &mut [[bool; 3]],
+) -> Result<(), SolidError> {
+    let count = free.len();
+    for &Prescribed { node, axis, .. } in prescribed {
+        let of = free.get_mut(node as usize).ok_or(SolidError::NoSuchNode { node, count })?;
+        let of = of.get_mut(axis).ok_or(SolidError::NoSuchAxis { node, axis })?;
+        if !std::mem::take(of) {
+            return Err(SolidError::PrescribedTwice { node, axis });
+        }
+    }
+    let mut nodes = loads.iter().flat_map(|load| &load.forces).map(|(node, _)| *node);
+    let missing = nodes.find(|node| *node as usize >= count);
+    missing.map_or(Ok(()), |node| Err(SolidError::NoSuchNode { node, count }))
+}
+
+/// Adds loads, each at the factor of its profile, N.
+pub(crate) fn add_loads<const N: usize>(
+    loads: &[Load],
+    factor: impl Fn(&Profile) -> f64,
+    forces: &mut [[f64; N]],
+) {
+    for load in loads {
+        let factor = factor(&load.profile);
+        for (node, force) in &load.forces {
+            for i in 0..3 {
+                forces[*node as usize][i] += factor * force[i];
+            }
+        }
+    }
 }
 
 /// The undeformed corners of an element.
@@ -201,25 +186,13 @@ impl SolidModel {
         if let Some(node) = mass.iter().position(|m| *m == 0.0) {
             return Err(SolidError::NoMass { node: labels.node(node) });
         }
-        let mut per_mass: Vec<Node> =
-            mass.iter().map(|m| [1.0 / m, 1.0 / m, 1.0 / m, 0.0]).collect();
-        for Prescribed { node, axis, .. } in &problem.prescribed {
-            let (node, axis) = (*node, *axis);
-            let entry =
-                per_mass.get_mut(node as usize).ok_or(SolidError::NoSuchNode { node, count })?;
-            if axis > 2 {
-                return Err(SolidError::NoSuchAxis { node, axis });
-            }
-            if entry[axis] == 0.0 {
-                return Err(SolidError::PrescribedTwice { node, axis });
-            }
-            entry[axis] = 0.0;
-        }
-        for (node, _) in problem.loads.iter().flat_map(|load| &load.forces) {
-            if *node as usize >= count {
-                return Err(SolidError::NoSuchNode { node: *node, count });
-            }
-        }
+        let mut free = vec![[true; 3]; count];
+        take_prescribed(&problem.prescribed, &problem.loads, &mut free)?;
+        let of = |(m, free): (&f64, &[bool; 3])| {
+            let [x, y, z] = free.map(|free| if free { 1.0 / m } else { 0.0 });
+            [x, y, z, 0.0]
+        };
+        let per_mass = mass.iter().zip(&free).map(of).collect();
         Ok(SolidModel { problem, labels, blocks, mass, per_mass })
     }
 
@@ -303,15 +276,7 @@ impl SolidModel {
             return;
         }
         ran.add(Stage::Loads, self.problem.loads.len() as u64);
-        for load in &self.problem.loads {
-            let factor = load.profile.value(t);
-            for (node, force) in &load.forces {
-                let sum = &mut forces[*node as usize];
-                for i in 0..3 {
-                    sum[i] += factor * force[i];
-                }
-            }
-        }
+        add_loads(&self.problem.loads, |profile| profile.value(t), forces);
     }
 
     /// Weight of masses at nodes.

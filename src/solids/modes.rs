@@ -1,6 +1,7 @@
 //! Lowest natural frequencies and modes of a solid: Lanczos' method on the shifted and inverted problem.
 
 use crate::kinematics::vec3::Vec3;
+use crate::numeric::ritz;
 use crate::numeric::sparse::{Factor, FactorError, SymmetricMatrix};
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
@@ -8,7 +9,7 @@ use crate::solids::model::SolidModel;
 use crate::solids::tangent::{
     MassMatrix, PRESCRIBED, Unknowns, mass, mass_pattern, pattern, stiffness,
 };
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVectorView};
 use std::f64::consts::TAU;
 use std::iter::zip;
 use thiserror::Error;
@@ -471,29 +472,21 @@ impl<'a> Krylov<'a> {
 
     /// Eigenvalues of the inverse within the space, largest first.
     fn largest(&self) -> Vec<f64> {
-        let mut values: Vec<f64> =
-            self.projected.clone().symmetric_eigenvalues().iter().copied().collect();
+        let mut values = self.projected.clone().symmetric_eigenvalues().as_slice().to_vec();
         values.sort_by(|a, b| b.total_cmp(a));
         values
     }
 
     /// The best approximations of the eigenvectors with the largest eigenvalues of the inverse.
     fn ritz(&self, wanted: usize) -> Vec<(Vec<f64>, f64)> {
-        let eigen = SymmetricEigen::new(self.projected.clone());
-        let mut order: Vec<usize> = (0..self.basis.len()).collect();
-        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-        order
-            .into_iter()
-            .take(wanted)
-            .map(|at| {
-                let mut vector = vec![0.0; self.masses.size()];
-                for (basis, share) in self.basis.iter().zip(eigen.eigenvectors.column(at).iter()) {
-                    for (v, b) in vector.iter_mut().zip(basis) {
-                        *v += share * b;
-                    }
-                }
-                (vector, eigen.eigenvalues[at])
-            })
-            .collect()
+        let (values, vectors) = ritz::sorted(self.projected.clone(), |a, b| b.total_cmp(a));
+        let whole = |(shares, value): (DVectorView<f64>, f64)| {
+            let mut vector = vec![0.0; self.masses.size()];
+            for (basis, share) in self.basis.iter().zip(shares.iter()) {
+                add_times(&mut vector, *share, basis);
+            }
+            (vector, value)
+        };
+        vectors.column_iter().zip(values).take(wanted).map(whole).collect()
     }
 }

@@ -8,9 +8,10 @@ use crate::mesh::tet_mesh::Elements;
 use crate::solids::explicit::ExplicitMethod;
 use crate::solids::model::{SolidModel, centre, corners};
 use crate::solids::tet4_blocks::Node;
+use serde::{Deserialize, Serialize};
 
 /// Stability limit of an explicit method.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidStepLimit {
     /// Largest stable step, s.
     pub step: f64,

@@ -96,7 +96,7 @@ fn a_run_that_fails_keeps_its_last_row() {
     let state = json(out.join("state.json"));
     assert_eq!(state["stopped"], "failed");
     let rows = column(&out.join("series.csv"), "outer_x");
-    assert_eq!(state["rows"].as_u64(), Some(rows.len() as u64));
+    assert_eq!(state["sound"]["rows"].as_u64(), Some(rows.len() as u64));
     assert!(*rows.last().unwrap() > 1e-3, "{rows:?}");
     let summary = json(out.join("summary.json"));
     assert_eq!(summary["complete"], false);

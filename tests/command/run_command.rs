@@ -355,11 +355,11 @@ fn a_ball_forced_into_another_part_is_named_and_the_state_before_it_kept() {
     assert_eq!(state["stopped"], "failed");
     assert!(message.contains(state["error"].as_str().unwrap()), "{message}");
     // The last good state: numbers, of a step before the one that failed, with the rows so far.
-    let numbers = state["bearing"]["state"].as_array().unwrap();
+    let numbers = state["sound"]["checkpoint"]["Bearing"]["state"].as_array().unwrap();
     assert!(numbers.len() > 13 * 8 && numbers.iter().all(Value::is_number));
     let step = format!("step {},", state["steps"].as_u64().unwrap() + 1);
     assert!(message.contains(&step), "{message}");
-    let rows = state["rows"].as_u64().unwrap();
+    let rows = state["sound"]["rows"].as_u64().unwrap();
     assert!(rows >= 2, "{rows} rows");
     let series = fs::read_to_string(out.join("series.csv")).unwrap();
     assert_eq!(series.lines().count() as u64, rows + 1);

@@ -18,6 +18,7 @@ use bearing_dynamics::solids::condensation::{
     CondenseError, CondensedBore, Reach, condense, geometry_error,
 };
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::error::SolidError;
 use bearing_dynamics::solids::model::{Prescribed, SolidModel};
 use housing_common::*;
 use nalgebra::Vector3;
@@ -281,7 +282,7 @@ fn what_a_condensed_housing_cannot_be_is_an_error() {
     loose.prescribed.clear();
     let loose = SolidModel::new(loose).unwrap();
     let error = condense(&loose, &bore_of(&mesh), &reach()).err();
-    assert!(matches!(error, Some(CondenseError::Free { .. })), "{error:?}");
+    assert!(matches!(error, Some(CondenseError::Solid(SolidError::Free { .. }))), "{error:?}");
 }
 
 /// The housing's own weight moves its bore before anything touches.

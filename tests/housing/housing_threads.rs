@@ -8,7 +8,9 @@ use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::members::body::Mobility;
 use bearing_dynamics::members::mount::Mount;
 use bearing_dynamics::motion::coupling::{CoupledMotion, CouplingError};
-use bearing_dynamics::output::session::{HousedParts, Motion, Parts, RunRequest, Session, Status};
+use bearing_dynamics::output::session::{
+    Checkpoint, HousedParts, Motion, Parts, RunRequest, Session, Status,
+};
 use bearing_dynamics::output::state::{self, StateRecord, Stopped};
 use bearing_dynamics::plan::channels::ChannelGroup;
 
@@ -92,11 +94,12 @@ fn neither_threads_nor_a_break_change_a_bit() {
     assert_eq!(rows(&second), rows(&whole));
     // One that lacks a seat is no state of this run.
     let mut lacking = kept.clone();
-    lacking.exchange.as_mut().unwrap().seats[1].clear();
+    let Checkpoint::Housed(of, _) = &mut lacking.sound.checkpoint else { panic!("a housing") };
+    of.solids[1].seats.clear();
     let refused =
         state::resume(folder.path(), &lacking, Parts::Housed(Box::new(parts(1))), &request(6e-5));
     let Err(error) = refused else { panic!("a state without a seat") };
-    assert!(error.to_string().contains("a part of the scene is missing"), "{error}");
+    assert!(error.to_string().contains("damaged"), "{error}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ use bearing_dynamics::kinematics::vec3::{Vec3, cross};
 use bearing_dynamics::mesh::generate::bushing;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::error::SolidError;
 use bearing_dynamics::solids::model::{DampedMotion, SolidModel, SolidProblem};
 use bearing_dynamics::solids::rubber::bar::Bar;
 use bearing_dynamics::solids::rubber::harmonic::complex_stiffness;
@@ -73,7 +74,8 @@ fn forces_are_the_derivative_of_the_energy_and_stiffness_that_of_forces() {
     let scale = of.as_flattened().iter().fold(0.0, |m: f64, f| m.max(f.abs()));
     let mut tangent = Tangent::new(&model);
     // So shaken a cube is not stable, but its stiffness is what it is.
-    let _ = tangent.refresh(&model, &StepLaw::RELAXED, &moved, None).unwrap();
+    let refused = tangent.refresh(&model, &StepLaw::RELAXED, &moved, None);
+    assert!(matches!(refused, Ok(()) | Err(SolidError::Factor(_))), "{refused:?}");
     let matrix = tangent.stiffness();
     let stiffest = (0..matrix.size())
         .flat_map(|column| matrix.column(column))

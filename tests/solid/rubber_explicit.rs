@@ -13,9 +13,9 @@ use bearing_dynamics::kinematics::vec3::{Vec3, cross};
 use bearing_dynamics::mesh::Elements;
 use bearing_dynamics::mesh::generate::bar;
 use bearing_dynamics::numeric::profile::Profile;
+use bearing_dynamics::solids::error::SolidError;
 use bearing_dynamics::solids::explicit::{ExplicitSolid, SolidStepping, padded};
-use bearing_dynamics::solids::model::{Prescribed, SolidError};
-use bearing_dynamics::solids::rubber::error::RubberError;
+use bearing_dynamics::solids::model::Prescribed;
 use bearing_dynamics::solids::rubber::explicit::RubberBody;
 use bearing_dynamics::solids::rubber::tangent::{StepLaw, add_forces};
 use bearing_dynamics::solids::rubber::tet_forces::{History, MeanStress};
@@ -370,9 +370,7 @@ fn beyond_the_step_limit_the_motion_grows() {
                 still.clone(),
                 still,
             );
-            let Err(RubberError::Problem(SolidError::Step { .. })) = refused else {
-                panic!("a step beyond the limit")
-            };
+            let Err(SolidError::Step { .. }) = refused else { panic!("a step beyond the limit") };
             let grown = |fraction: f64| {
                 let mut solid = thrown(&body, 1e-9, stepping);
                 solid.step_size = fraction * found.limit.step;
@@ -415,7 +413,7 @@ fn mass_scaling_lengthens_the_step_and_keeps_the_weight() {
     let exact = -9.81 * 1100.0 * SIDE * SIDE * SIDE;
     assert!((weight - exact).abs() <= 1e-12 * exact.abs(), "{weight} {exact}");
     body.mass_scale = 0.0;
-    assert!(matches!(body.model(), Err(RubberError::Option { what: "mass scale", .. })));
+    assert!(matches!(body.model(), Err(SolidError::Option { what: "mass scale", .. })));
 }
 
 #[test]

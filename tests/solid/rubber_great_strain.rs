@@ -5,7 +5,7 @@ use bearing_dynamics::ch2_housing::elastomer::eight_chain::{ChainPull, EightChai
 use bearing_dynamics::ch2_housing::elastomer::maxwell::Maxwell;
 use bearing_dynamics::ch2_housing::elastomer::named;
 use bearing_dynamics::numeric::profile::Profile;
-use bearing_dynamics::solids::rubber::error::{RubberError, StepFailure};
+use bearing_dynamics::solids::error::{SolidError, StepFailure};
 use bearing_dynamics::solids::rubber::model::{RubberModel, RubberProblem, supports};
 use bearing_dynamics::solids::rubber::relaxed::{RelaxedError, relaxed};
 use bearing_dynamics::solids::rubber::steps::{RubberSolid, StepCounts};
@@ -30,7 +30,7 @@ fn pulled(
     (bulk, gamma): (f64, f64),
     sides: Sides,
     stretch: f64,
-) -> (f64, StepCounts, Option<RubberError>) {
+) -> (f64, StepCounts, Option<SolidError>) {
     let mut mesh = cube(cells);
     for (axis, name) in [(1, "y_end"), (2, "z_end")] {
         let nodes = 0..mesh.nodes.len() as u32;
@@ -90,7 +90,7 @@ fn great_strain_of_several_cells() {
     }
     let (reached, _, ended) = pulled(1, (1e2, 0.0), Sides::Bonded, 4.0);
     let lost =
-        matches!(ended, Some(RubberError::NoEquilibrium { failure: StepFailure::Unstable, .. }));
+        matches!(ended, Some(SolidError::NoEquilibrium { failure: StepFailure::Unstable, .. }));
     assert!(lost && reached > 2.0 && reached < 3.0, "{reached}");
 }
 
@@ -102,7 +102,7 @@ fn free_sides_of_the_network_alone_fold() {
     let wrinkles = 0.2956f64.powf(2.0 / 3.0);
     assert_eq!(pulled(1, (1e2, 0.0), Sides::Free, 0.2).2, None);
     let (reached, counts, ended) = pulled(2, (1e2, 0.0), Sides::Free, 0.2);
-    let Some(RubberError::NoEquilibrium { failure, .. }) = ended else { panic!("{ended:?}") };
+    let Some(SolidError::NoEquilibrium { failure, .. }) = ended else { panic!("{ended:?}") };
     assert_eq!(failure, StepFailure::Unstable, "{reached}");
     // Not before half of Biot's compression nor far behind it; steps are cut down until nothing is left.
     assert!((reached - wrinkles).abs() <= 0.1, "{reached} {wrinkles}");

@@ -7,10 +7,9 @@ use bearing_dynamics::mesh::tet_mesh::Order;
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::energy::strain_energy;
 use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::error::SolidError;
 use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
-use bearing_dynamics::solids::model::{
-    DampedMotion, Load, Prescribed, SolidError, SolidModel, SolidProblem,
-};
+use bearing_dynamics::solids::model::{DampedMotion, Load, Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solids::step_limit::{step_limit, step_limit_within};
 use bearing_dynamics::solids::tangent::MassMatrix;
 use bearing_dynamics::solids::threads::WorkerPool;

@@ -7,7 +7,8 @@ use bearing_dynamics::kinematics::strain::{Sym3, full};
 use bearing_dynamics::kinematics::vec3::Vec3;
 use bearing_dynamics::mesh::tet_mesh::{Elements, Order};
 use bearing_dynamics::numeric::profile::Profile;
-use bearing_dynamics::solids::equilibrium::{EquilibriumError, EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::equilibrium::{EquilibriumOptions, equilibrium};
+use bearing_dynamics::solids::error::SolidError;
 use bearing_dynamics::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping};
 use bearing_dynamics::solids::model::{Load, Prescribed, SolidModel, SolidProblem};
 use bearing_dynamics::solids::modes::{ModeOptions, modes};
@@ -152,10 +153,7 @@ fn a_free_body_has_no_equilibrium() {
     let model = SolidModel::new(problem).unwrap();
     let found = equilibrium(&model, 0.0, &EquilibriumOptions::default());
     assert!(
-        matches!(
-            found,
-            Err(EquilibriumError::Free { .. }) | Err(EquilibriumError::NotConverged { .. })
-        ),
+        matches!(found, Err(SolidError::Free { .. }) | Err(SolidError::Unbalanced { .. })),
         "{found:?}"
     );
 }
@@ -177,7 +175,7 @@ fn a_load_that_is_far_too_large_is_called_so() {
     let small = small.iter().map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
     let error = bent(-100.0).unwrap_err();
     let said = error.to_string();
-    let EquilibriumError::TooLarge { reached, moved, pivot, linear, size, .. } = error else {
+    let SolidError::TooLarge { reached, moved, pivot, linear, size, .. } = error else {
         panic!("{said}");
     };
     assert!((linear.value / (1e8 * small) - 1.0).abs() <= 1e-3, "{linear:?} {small:e}");
@@ -205,7 +203,7 @@ fn a_part_that_is_free_is_named_by_its_place() {
         .push(Load { forces: vec![(count, [1.0, 0.0, 0.0])], profile: Profile::Constant(1.0) });
     let model = SolidModel::new(problem).unwrap();
     let error = equilibrium(&model, 0.0, &EquilibriumOptions::default()).unwrap_err();
-    let EquilibriumError::Free { pivot } = &error else { panic!("{error}") };
+    let SolidError::Free { pivot } = &error else { panic!("{error}") };
     assert!(pivot.at[0] >= 1.0 && pivot.node > Some(u64::from(count)), "{pivot}");
     let said = error.to_string();
     assert!(said.contains(&format!("({pivot}): a part is free to move")), "{said}");
@@ -284,12 +282,12 @@ fn a_nearly_incompressible_bar_is_solved_to_rounding() {
         let found = equilibrium(&model, 0.0, &options)?;
         let reaction: f64 = found.reactions.iter().map(|force| force[2]).sum();
         let sag = nodes.iter().map(|&n| found.displacement[n as usize][2]).sum::<f64>() * share;
-        Ok::<_, EquilibriumError>((found.residual, reaction, sag))
+        Ok::<_, SolidError>((found.residual, reaction, sag))
     };
     let usual = EquilibriumOptions::default();
     // Without the allowance there is no end to it.
     let error = solve(0.49999, usual.tolerance).unwrap_err();
-    assert!(matches!(error, EquilibriumError::NotConverged { .. }), "{error}");
+    assert!(matches!(error, SolidError::Unbalanced { .. }), "{error}");
     let (residual, reaction, sag) = solve(0.49999, usual.rounding).unwrap();
     assert!(residual > usual.tolerance && residual <= usual.rounding, "{residual}");
     // The unbalanced forces are rounding, and of either sign.

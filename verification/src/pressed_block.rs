@@ -10,7 +10,8 @@ use bearing_dynamics::mesh::generate::{block, graded, uniform};
 use bearing_dynamics::mesh::{MeshError, Order, TetMesh};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::solids::contact::{CylinderContact, CylinderPath};
-use bearing_dynamics::solids::model::{SolidError, SolidModel};
+use bearing_dynamics::solids::error::SolidError;
+use bearing_dynamics::solids::model::SolidModel;
 use bearing_dynamics::solids::stress::nodal_stresses;
 use nalgebra::{Matrix4, UnitQuaternion, Vector3, Vector4};
 

@@ -2,7 +2,7 @@
 
 use crate::commands::assembly::lists::Lists;
 use crate::commands::assembly::still;
-use bearing_dynamics::output::journal::hexadecimal;
+use bearing_dynamics::output::state::hexadecimal;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::tables::keys;
 use bearing_dynamics::scene::{Document, SceneError, Subject, SweepAxis, resolve, resolve_subject};

@@ -5,7 +5,7 @@ use crate::kinematics::strain::von_mises;
 use crate::output::series::Column;
 use crate::output::session::SessionError;
 use crate::scene::build::solid::{NamedNodes, Support};
-use crate::solids::rubber::error::{RubberError, StepFailure};
+use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::rubber::measures::{RubberLedger, point_stresses};
 use crate::solids::rubber::steps::RubberSolid;
 
@@ -39,11 +39,7 @@ impl Recorder {
     ) -> Result<(), SessionError> {
         let (model, state) = (solid.model(), solid.state());
         let cannot_be = |failure: StepFailure| {
-            SessionError::Rubber(RubberError::NoEquilibrium {
-                time: state.time,
-                step: 0.0,
-                failure,
-            })
+            SessionError::Solid(SolidError::NoEquilibrium { time: state.time, step: 0.0, failure })
         };
         let ledger = RubberLedger::of(model, state).map_err(cannot_be)?;
         let stresses = point_stresses(model, state).map_err(cannot_be)?;

@@ -12,8 +12,8 @@ use crate::output::series::Column;
 use crate::output::session::{HousedParts, LedgerWatch, SessionError};
 use crate::solids::bore_equilibrium::BoreState;
 use crate::solids::condensation::CondensedBore;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
-use crate::solids::model::SolidError;
 use crate::solids::stress::first_inverted;
 
 /// Contact of a race with its bore at one time.

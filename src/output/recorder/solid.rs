@@ -6,8 +6,8 @@ use crate::output::series::Column;
 use crate::output::session::{LedgerWatch, SessionError};
 use crate::scene::build::solid::{NamedNodes, Support};
 use crate::solids::energy::SolidEnergy;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
-use crate::solids::model::SolidError;
 use crate::solids::stress::check;
 
 pub(super) fn columns(probes: &[NamedNodes], supports: &[Support]) -> Vec<Column> {

@@ -22,9 +22,9 @@ use crate::output::series::{Series, SeriesError};
 use crate::output::table::readable;
 use crate::plan::counts::{Counts, StageCounts};
 use crate::solids::bore_equilibrium::BoreError;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
-use crate::solids::model::SolidError;
-use crate::solids::rubber::error::RubberError;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -54,8 +54,6 @@ pub enum SessionError {
     QuasiStaticSequence(#[from] QuasiStaticError),
     #[error(transparent)]
     Bore(#[from] BoreError),
-    #[error(transparent)]
-    Rubber(#[from] RubberError),
     #[error(
         "{residual:.3e} J are unaccounted for at t = {} s, step {step}, more than {limit} of \
          the {turned_over:.3e} J exchanged; take a smaller step",
@@ -103,7 +101,7 @@ pub struct Session<'p> {
 }
 
 /// State from which a later run resumes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sound {
     pub checkpoint: Checkpoint,
     pub watch: LedgerWatch,

@@ -20,11 +20,13 @@ use crate::numeric::clock::{Clock, whole_number};
 use crate::plan::counts::{Counts, StageCounts};
 use crate::scene::build::solid::SolidSetup;
 use crate::solids::checkpoint::SolidCheckpoint;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
-use crate::solids::model::{SolidError, SolidModel};
+use crate::solids::model::SolidModel;
 use crate::solids::rubber::checkpoint::RubberCheckpoint;
 use crate::solids::step_limit::{SolidStepLimit, step_limit};
 use crate::solids::threads::WorkerPool;
+use serde::{Deserialize, Serialize};
 
 pub enum Parts<'p> {
     Bearing(Box<Assembly>),
@@ -142,7 +144,7 @@ impl Motion<'_> {
 }
 
 /// Complete state of a motion, to resume with the same bits.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Checkpoint {
     Bearing(Box<BearingCheckpoint>),
     Solid(Box<SolidCheckpoint>, SolidStepLimit),

@@ -2,8 +2,8 @@
 
 use super::SessionError;
 use crate::scene::build::rubber::RubberSetup;
+use crate::solids::error::SolidError;
 use crate::solids::rubber::checkpoint::RubberCheckpoint;
-use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::steps::{RubberSolid, StepOptions, Stepping};
 
 #[derive(Clone, Copy)]
@@ -29,7 +29,7 @@ impl<'p> RubberParts<'p> {
     }
 
     /// State at rest, before t = 0.
-    pub(super) fn at_rest(&self, interval: f64) -> Result<MovingRubber<'p>, RubberError> {
+    pub(super) fn at_rest(&self, interval: f64) -> Result<MovingRubber<'p>, SolidError> {
         let options = StepOptions { stepping: self.stepping, ..StepOptions::default() };
         let solid = RubberSolid::new(&self.setup.model, options)?;
         Ok(MovingRubber { solid, stepping: self.stepping, rows: 0, interval })
@@ -37,21 +37,17 @@ impl<'p> RubberParts<'p> {
 }
 
 impl MovingRubber<'_> {
-    pub(super) fn go_to_next_row(&mut self) -> Result<(), RubberError> {
+    pub(super) fn go_to_next_row(&mut self) -> Result<(), SolidError> {
         self.go_to((self.rows + 1) as f64 * self.interval)?;
         self.rows += 1;
         Ok(())
     }
 
-    fn go_to(&mut self, time: f64) -> Result<(), RubberError> {
+    fn go_to(&mut self, time: f64) -> Result<(), SolidError> {
         self.solid.advance(time, |_| {})
     }
 
-    pub(super) fn restore(
-        &mut self,
-        kept: &RubberCheckpoint,
-        rows: u64,
-    ) -> Result<(), RubberError> {
+    pub(super) fn restore(&mut self, kept: &RubberCheckpoint, rows: u64) -> Result<(), SolidError> {
         self.rows = rows;
         self.solid.restore(kept)
     }

@@ -9,8 +9,8 @@ use crate::numeric::profile::Profile;
 use crate::scene::build::assembly::{
     AssemblyScene, BushingInElements, BushingOfSpring, BushingStepping, Spring, SpringAt,
 };
+use crate::solids::error::SolidError;
 use crate::solids::model::Prescribed;
-use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::explicit::RubberBody;
 use crate::solids::rubber::model::{RubberModel, RubberProblem};
 use crate::solids::rubber::plan::Bonded;
@@ -166,10 +166,10 @@ fn ten_nodes(
     mesh: &TetMesh,
     of: &BushingOfSpring,
     prescribed: Vec<Prescribed>,
-) -> Result<RubberModel, RubberError> {
+) -> Result<RubberModel, SolidError> {
     let elements = match &mesh.elements {
         Elements::Quadratic(list) => list.clone(),
-        Elements::Linear(_) => return Err(RubberError::FourNodes),
+        Elements::Linear(_) => return Err(SolidError::FourNodes),
     };
     let (nodes, material) = (mesh.nodes.clone(), of.material.clone());
     RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads: Vec::new() })

@@ -14,7 +14,8 @@ use crate::motion::coupling::SolidPart;
 use crate::motion::explicit_shaft::{Joint, SectionUnbalance, ShaftPart};
 use crate::numeric::profile::Profile;
 use crate::scene::build::assembly::{AssemblyScene, Carrier, RaceJoint, SceneBeam, SceneBody};
-use crate::solids::model::{Load, SolidError, SolidModel, SolidProblem};
+use crate::solids::error::SolidError;
+use crate::solids::model::{Load, SolidModel, SolidProblem};
 use thiserror::Error;
 
 /// A shaft ready for explicit steps.

@@ -11,9 +11,9 @@ use crate::scene::build::deck_materials::deck_materials;
 use crate::scene::build::solid_mesh::BuiltMesh;
 use crate::scene::resolve::rubber::FOUR_NODES_LOCK;
 use crate::scene::resolve::solid_scene::{Law, LoadKind, ProbeOf, SolidScene};
+use crate::solids::error::SolidError;
 use crate::solids::labels::Labels;
 use crate::solids::model::{Load, Prescribed, SolidProblem};
-use crate::solids::rubber::error::RubberError;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
@@ -24,7 +24,7 @@ pub enum SolidSetupError {
     #[error(transparent)]
     Material(#[from] ElasticError),
     #[error(transparent)]
-    Rubber(#[from] RubberError),
+    Solid(#[from] SolidError),
     #[error("solid.material.law: this command supports linear elastic solids only")]
     OtherLaw,
     #[error(
@@ -111,7 +111,7 @@ impl SolidSetupError {
             | SolidSetupError::DeckMaterial { .. }
             | SolidSetupError::DeckLaw { .. } => About::key("solid.material"),
             SolidSetupError::OtherLaw => About::key("solid.material.law"),
-            SolidSetupError::Rubber(_) => About::key("solid"),
+            SolidSetupError::Solid(_) => About::key("solid"),
             SolidSetupError::FourNodes => About::key("solid.mesh.file"),
             SolidSetupError::NotHeld { .. } => About::key("solid.harmonic.set"),
             SolidSetupError::VibratesTwoWays { .. } | SolidSetupError::VibratesFreely { .. } => {

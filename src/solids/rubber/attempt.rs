@@ -1,23 +1,22 @@
 //! One step of a solid of rubber: its equilibrium, its error, and its commit.
 
+use crate::plan::Stage;
 use crate::ch2_housing::elastomer::maxwell::{
     beyond_small_strain, commit, curvature_error, relaxed_history, summed,
 };
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use crate::kinematics::vec3::dot;
-use crate::plan::Stage;
+use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::model::corners;
-use crate::solids::rubber::error::{RubberError, StepFailure};
 use crate::solids::rubber::model::Moment;
-use crate::solids::rubber::newton::Stop;
 use crate::solids::rubber::steps::{RubberSolid, Stepping};
 use crate::solids::rubber::tangent::StepLaw;
 
 impl RubberSolid<'_> {
     /// Takes one step that can be judged, or a pair behind a corner. Returns the factor for the length of the next;
     /// leaves the state unchanged if it fails.
-    pub(crate) fn attempt(&mut self, step: f64, end: f64) -> Result<f64, Stop> {
+    pub(crate) fn attempt(&mut self, step: f64, end: f64) -> Result<f64, SolidError> {
         let viscous = !self.search.model.problem.material.maxwell.is_empty();
         if !(self.judges() && viscous) {
             self.equilibrium(step, end)?;
@@ -43,7 +42,7 @@ impl RubberSolid<'_> {
         pair.map(|longer| (0.5 * longer).max(0.5))
     }
 
-    fn pair(&mut self, half: f64, end: f64) -> Result<f64, Stop> {
+    fn pair(&mut self, half: f64, end: f64) -> Result<f64, SolidError> {
         let middle = self.state.time + half;
         self.equilibrium(half, middle)?;
         self.accept(half, middle);
@@ -61,7 +60,7 @@ impl RubberSolid<'_> {
     }
 
     /// Finds the equilibrium at the end of a step without any other change. A step that ends at a jump ends before it.
-    pub(crate) fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), Stop> {
+    pub(crate) fn equilibrium(&mut self, step: f64, end: f64) -> Result<(), SolidError> {
         let end = if step > 0.0 { end.next_down() } else { end };
         self.set_history(step)?;
         let at = Moment::at(end);
@@ -75,7 +74,7 @@ impl RubberSolid<'_> {
             }
             match self.search.converge(at, &law, &self.options.convergence) {
                 // Nearly incompressible rubber follows its tangent where it does not follow a straight line.
-                Err(Stop::Step(_)) => self.search.tangent.forget(),
+                Err(SolidError::Failed(_)) => self.search.tangent.forget(),
                 outcome => return outcome,
             }
         }
@@ -85,7 +84,7 @@ impl RubberSolid<'_> {
     }
 
     /// Sets the part of the stress that depends on the state before a step of `step` s.
-    pub(crate) fn set_history(&mut self, step: f64) -> Result<(), RubberError> {
+    pub(crate) fn set_history(&mut self, step: f64) -> Result<(), SolidError> {
         let maxwell = &self.search.model.problem.material.maxwell;
         self.factors.set(maxwell, step)?;
         if !maxwell.is_empty() {
@@ -100,7 +99,7 @@ impl RubberSolid<'_> {
     }
 
     /// Factor for the length of the next step, from the estimated error of the step just solved.
-    fn judged(&mut self, step: f64) -> Result<f64, Stop> {
+    fn judged(&mut self, step: f64) -> Result<f64, SolidError> {
         let Stepping::Accuracy(accuracy) = self.options.stepping else { return Ok(3.0) };
         let model = self.search.model;
         let maxwell = &model.problem.material.maxwell;

@@ -3,7 +3,7 @@
 use crate::ch2_housing::elastomer::Elastomer;
 use crate::ch2_housing::elastomer::maxwell::{StepFactors, commit, relaxed_history};
 use crate::kinematics::strain::Sym3;
-use crate::solids::rubber::error::{RubberError, StepFailure};
+use crate::solids::error::{SolidError, StepFailure};
 
 /// The bar after an accepted step; axis X.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ impl<'a> Bar<'a> {
     /// # Errors
     ///
     /// Invalid material constants.
-    pub fn new(material: &'a Elastomer) -> Result<Bar<'a>, RubberError> {
+    pub fn new(material: &'a Elastomer) -> Result<Bar<'a>, SolidError> {
         material.check()?;
         Ok(Bar {
             material,
@@ -49,7 +49,7 @@ impl<'a> Bar<'a> {
     ///
     /// A negative step; a strain beyond the material's limit, or without a stress-free lateral stretch. The bar then
     /// stays unchanged.
-    pub fn step(&mut self, dt: f64, strain: f64) -> Result<(), RubberError> {
+    pub fn step(&mut self, dt: f64, strain: f64) -> Result<(), SolidError> {
         self.factors.set(&self.material.maxwell, dt)?;
         let axial = libm::expm1(strain);
         // Start with constant volume.
@@ -88,6 +88,6 @@ impl<'a> Bar<'a> {
         }
         let failure =
             StepFailure::NotConverged { residual: last, scale, iterations: MOST_ITERATIONS };
-        Err(RubberError::NoEquilibrium { time: self.time, step: dt, failure })
+        Err(SolidError::NoEquilibrium { time: self.time, step: dt, failure })
     }
 }

@@ -5,9 +5,10 @@ use crate::kinematics::strain::Sym3;
 use crate::kinematics::vec3::Vec3;
 use crate::solids::rubber::model::RubberModel;
 use crate::solids::rubber::steps::StepCounts;
+use serde::{Deserialize, Serialize};
 
 /// The state after an accepted step, complete.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RubberState {
     /// s.
     pub time: f64,
@@ -54,7 +55,7 @@ impl RubberState {
 }
 
 /// The state of the present factors, with which a search begins.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Factored {
     /// See [`crate::solids::rubber::tangent::StepLaw`].
     pub gain: f64,
@@ -64,7 +65,7 @@ pub struct Factored {
 }
 
 /// See [`crate::solids::rubber::steps::RubberSolid::checkpoint`].
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RubberCheckpoint {
     pub state: RubberState,
     /// Length of the next step, s, and the largest total deviatoric stress so far, Pa.
@@ -73,53 +74,6 @@ pub struct RubberCheckpoint {
     pub counts: StepCounts,
     pub iterations: usize,
     pub factorisations: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub factored: Option<Factored>,
-}
-
-impl RubberCheckpoint {
-    /// The long parts as one list.
-    pub fn numbers(&self) -> Vec<f64> {
-        let state = &self.state;
-        let of_nodes = [&state.displacement, &state.velocity, &state.forces];
-        let of_points = [&state.deviatoric, &state.rate, &state.history];
-        let mut numbers: Vec<f64> = Vec::new();
-        of_nodes.iter().for_each(|part| numbers.extend(part.as_flattened()));
-        of_points.iter().for_each(|part| numbers.extend(part.as_flattened()));
-        if let Some(factored) = &self.factored {
-            numbers.extend(factored.displacement.as_flattened());
-            numbers.extend(factored.carried.as_flattened());
-        }
-        numbers
-    }
-
-    /// Length of [`RubberCheckpoint::numbers`] for a body of this number of nodes, quadrature points and Maxwell
-    /// elements.
-    pub fn length(&self, [nodes, points, terms]: [usize; 3]) -> usize {
-        let factored = if self.factored.is_some() { 3 * nodes + 6 * points } else { 0 };
-        9 * nodes + 6 * points * (2 + terms) + factored
-    }
-
-    /// Restores the long parts from [`RubberCheckpoint::numbers`]; `None` if their number is not that of a body of this
-    /// number of nodes, quadrature points and Maxwell elements.
-    #[must_use]
-    pub fn with_numbers(mut self, [nodes, points, terms]: [usize; 3], all: &[f64]) -> Option<Self> {
-        let mut rest = all;
-        let mut next = |count: usize| rest.split_off(..count);
-        let state = &mut self.state;
-        for part in [&mut state.displacement, &mut state.velocity, &mut state.forces] {
-            *part = next(3 * nodes)?.as_chunks().0.to_vec();
-        }
-        for (part, count) in [
-            (&mut state.deviatoric, points),
-            (&mut state.rate, points),
-            (&mut state.history, points * terms),
-        ] {
-            *part = next(6 * count)?.as_chunks().0.to_vec();
-        }
-        if let Some(factored) = &mut self.factored {
-            factored.displacement = next(3 * nodes)?.as_chunks().0.to_vec();
-            factored.carried = next(6 * points)?.as_chunks().0.to_vec();
-        }
-        rest.is_empty().then_some(self)
-    }
 }

@@ -4,9 +4,8 @@
 //! an elastic solid and is stable in steps of any length; damping is that of the rubber.
 
 use crate::kinematics::vec3::Vec3;
-use crate::solids::rubber::error::RubberError;
+use crate::solids::error::SolidError;
 use crate::solids::rubber::model::Moment;
-use crate::solids::rubber::newton::Stop;
 use crate::solids::rubber::steps::RubberSolid;
 use crate::solids::rubber::tangent::StepLaw;
 
@@ -15,11 +14,11 @@ impl RubberSolid<'_> {
     ///
     /// # Errors
     ///
-    /// [`RubberError::NoEquilibrium`].
+    /// [`SolidError::NoEquilibrium`].
     pub fn rest_with(
         &mut self,
         driven: impl IntoIterator<Item = (u32, Vec3)>,
-    ) -> Result<(), RubberError> {
+    ) -> Result<(), SolidError> {
         self.drive(driven);
         let at = Moment::at(self.state.time);
         self.search.displacement.copy_from_slice(&self.state.displacement);
@@ -38,12 +37,12 @@ impl RubberSolid<'_> {
     ///
     /// # Errors
     ///
-    /// [`RubberError::NoEquilibrium`]; the state is then that before the step.
+    /// [`SolidError::NoEquilibrium`]; the state is then that before the step.
     pub fn driven_step(
         &mut self,
         step: f64,
         driven: impl IntoIterator<Item = (u32, Vec3)>,
-    ) -> Result<(), RubberError> {
+    ) -> Result<(), SolidError> {
         self.drive(driven);
         let end = self.state.time + step;
         if let Err(stop) = self.equilibrium(step, end) {
@@ -59,12 +58,12 @@ impl RubberSolid<'_> {
         self.search.driven.extend(driven);
     }
 
-    fn refused(&self, stop: Stop, step: f64) -> RubberError {
-        match stop {
-            Stop::All(error) => error,
-            Stop::Step(failure) => {
-                RubberError::NoEquilibrium { time: self.state.time, step, failure }
+    pub(crate) fn refused(&self, error: SolidError, step: f64) -> SolidError {
+        match error {
+            SolidError::Failed(failure) => {
+                SolidError::NoEquilibrium { time: self.state.time, step, failure }
             }
+            error => error,
         }
     }
 

@@ -9,11 +9,9 @@ use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::elements::tet4::Tet4;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::Elements;
+use crate::solids::error::SolidError;
 use crate::solids::explicit::{ExplicitMethod, ExplicitSolid, SolidStepping, padded};
-use crate::solids::model::{
-    DampedMotion, Load, Prescribed, SolidError, SolidModel, SolidProblem, corners,
-};
-use crate::solids::rubber::error::RubberError;
+use crate::solids::model::{DampedMotion, Load, Prescribed, SolidModel, SolidProblem, corners};
 use crate::solids::rubber::tet_forces::{History, MeanStress, RubberForces};
 use crate::solids::step_limit::{
     MOST_PRODUCTS, SolidStepLimit, lanczos, roots, stability_margin, step_limit_within,
@@ -56,10 +54,10 @@ impl RubberBody {
     /// # Errors
     ///
     /// A mass scale that is not positive; those of [`SolidModel::new`].
-    pub fn model(&self) -> Result<SolidModel, RubberError> {
+    pub fn model(&self) -> Result<SolidModel, SolidError> {
         let scale = self.mass_scale;
         if !(scale > 0.0 && scale.is_finite()) {
-            return Err(RubberError::Option { what: "mass scale", value: scale });
+            return Err(SolidError::Option { what: "mass scale", value: scale });
         }
         let shear_modulus = self.material.instantaneous_shear_modulus();
         let lambda = self.material.network.bulk - 2.0 / 3.0 * shear_modulus;
@@ -74,7 +72,7 @@ impl RubberBody {
             loads: self.loads.clone(),
             gravity: self.gravity.map(|g| g / scale),
         };
-        Ok(SolidModel::new(problem)?)
+        SolidModel::new(problem)
     }
 
     /// Forces of its elements, at rest and relaxed.
@@ -82,7 +80,7 @@ impl RubberBody {
     /// # Errors
     ///
     /// An element of zero volume.
-    pub fn forces(&self) -> Result<RubberForces, RubberError> {
+    pub fn forces(&self) -> Result<RubberForces, SolidError> {
         let model = self.model()?;
         let sound = "elements were checked when the model was made";
         let tets = self.elements.iter().map(|element| {
@@ -104,7 +102,7 @@ impl ExplicitSolid {
         stepping: SolidStepping,
         displacement: Vec<Vec3>,
         velocity: Vec<Vec3>,
-    ) -> Result<(ExplicitSolid, RubberStepLimit), RubberError> {
+    ) -> Result<(ExplicitSolid, RubberStepLimit), SolidError> {
         let (model, mut forces) = (body.model()?, body.forces()?);
         let displacement = padded(displacement);
         let found = rubber_step_limit(body, &model, &mut forces, &displacement);
@@ -116,7 +114,7 @@ impl ExplicitSolid {
         if !(step > 0.0 && step <= limit.step) {
             let element = model.labels.element(limit.element);
             let at = limit.at;
-            return Err(SolidError::Step { step, limit: limit.step, element, at }.into());
+            return Err(SolidError::Step { step, limit: limit.step, element, at });
         }
         let method = ExplicitMethod::CentralDifferences;
         let mut solid = ExplicitSolid::at_rest(model, method, step, limit);
@@ -136,7 +134,7 @@ impl ExplicitSolid {
         body: &RubberBody,
         fraction: f64,
         displacement: Vec<Vec3>,
-    ) -> Result<ExplicitSolid, RubberError> {
+    ) -> Result<ExplicitSolid, SolidError> {
         let (mut model, mut forces) = (body.model()?, body.forces()?);
         let displacement = padded(displacement);
         let limit = rubber_step_limit(body, &model, &mut forces, &displacement).limit;

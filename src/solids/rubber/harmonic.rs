@@ -11,10 +11,9 @@ use crate::elements::tet10::POINTS;
 use crate::elements::tet10_nodal;
 use crate::kinematics::strain::green_lagrange_change;
 use crate::kinematics::vec3::{Vec3, add_scaled, dot};
+use crate::solids::error::SolidError;
 use crate::solids::model::corners;
-use crate::solids::rubber::error::{RubberError, at_rest};
 use crate::solids::rubber::model::{Moment, RubberModel};
-use crate::solids::rubber::newton::Stop;
 use crate::solids::rubber::tangent::{StepLaw, Tangent};
 use crate::solids::tangent::PRESCRIBED;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -45,10 +44,10 @@ pub fn complex_stiffness(
     t: f64,
     pulsations: &[f64],
     tolerance: f64,
-) -> Result<Vec<ComplexStiffness>, RubberError> {
+) -> Result<Vec<ComplexStiffness>, SolidError> {
     let maxwell = &model.problem.material.maxwell;
     if let Some(bad) = pulsations.iter().find(|pulsation| !matches!(**pulsation, 0.0..)) {
-        return Err(RubberError::Pulsation(*bad));
+        return Err(SolidError::Pulsation(*bad));
     }
     let factors: Vec<Complex<f64>> = pulsations
         .iter()
@@ -80,7 +79,7 @@ pub fn complex_stiffness(
         }
     }
     let change = answers.iter().map(|answer| answer.change).fold(0.0, f64::max);
-    Err(RubberError::NotSettled { vectors: MOST_VECTORS, change, tolerance })
+    Err(SolidError::NotSettled { vectors: MOST_VECTORS, change, tolerance })
 }
 
 /// The motion and its derivatives by g, with the forces of both parts of the stiffness.
@@ -95,23 +94,19 @@ struct Space<'a> {
 }
 
 impl<'a> Space<'a> {
-    fn new(model: &'a RubberModel, t: f64, middle: f64) -> Result<Space<'a>, RubberError> {
+    fn new(model: &'a RubberModel, t: f64, middle: f64) -> Result<Space<'a>, SolidError> {
         let mut tangent = Tangent::new(model);
         let law = StepLaw { gain: middle - 1.0, carried: &[], inertia: 0.0 };
         let rest = vec![[0.0; 3]; model.problem.nodes.len()];
         let mut moved = rest.clone();
         model.prescribe(Moment::at(t), &mut moved);
         let mut right = vec![0.0; model.unknowns.count];
-        match tangent.refresh(model, &law, &rest, Some((&moved, &mut right))) {
-            Ok(outcome) => outcome.map_err(at_rest)?,
-            Err(failure) => {
-                let (time, step) = (0.0, 0.0);
-                return Err(match Stop::from(failure) {
-                    Stop::Step(failure) => RubberError::NoEquilibrium { time, step, failure },
-                    Stop::All(error) => error,
-                });
-            }
-        }
+        tangent.refresh(model, &law, &rest, Some((&moved, &mut right))).map_err(
+            |error| match error {
+                SolidError::Factor(error) => model.at_rest(error),
+                error => error,
+            },
+        )?;
         let mut space = Space {
             model,
             tangent,

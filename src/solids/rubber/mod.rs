@@ -4,7 +4,6 @@ mod attempt;
 pub mod bar;
 pub mod checkpoint;
 pub mod driven;
-pub mod error;
 pub mod explicit;
 pub mod harmonic;
 pub mod measures;

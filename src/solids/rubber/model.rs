@@ -6,9 +6,10 @@ use crate::elements::tet10_nodal;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::TetMesh;
 use crate::numeric::profile::Profile;
-use crate::numeric::sparse::{Ordering, SymmetricMatrix};
-use crate::solids::model::{Load, Prescribed, SolidError, corners};
-use crate::solids::rubber::error::RubberError;
+use crate::numeric::sparse::{FactorError, Ordering, SymmetricMatrix};
+use crate::solids::error::{SolidError, at_rest};
+use crate::solids::labels::Labels;
+use crate::solids::model::{Load, Prescribed, add_loads, corners, take_prescribed};
 use crate::solids::tangent::{Unknowns, pattern_over};
 
 /// A solid of one rubber in ten-node elements, SI units.
@@ -82,13 +83,13 @@ impl RubberModel {
     /// # Errors
     ///
     /// Invalid material constants, a folded element, a node or axis out of range, a component prescribed twice.
-    pub fn new(problem: RubberProblem) -> Result<RubberModel, RubberError> {
+    pub fn new(problem: RubberProblem) -> Result<RubberModel, SolidError> {
         problem.material.check()?;
         let count = problem.nodes.len();
         let mut tets = Vec::with_capacity(problem.elements.len());
         for (index, element) in problem.elements.iter().enumerate() {
             if let Some(&node) = element.iter().find(|node| **node as usize >= count) {
-                return Err(SolidError::NoSuchNode { node, count }.into());
+                return Err(SolidError::NoSuchNode { node, count });
             }
             let tet = Tet10::new(&corners(&problem.nodes, element)).map_err(|source| {
                 let (element, at) = (index as u64 + 1, centre(&problem, index));
@@ -108,25 +109,13 @@ impl RubberModel {
         problem: RubberProblem,
         tets: Vec<Tet10>,
         averaged: Option<(Vec<Patch>, Vec<[u32; 4]>)>,
-    ) -> Result<RubberModel, RubberError> {
+    ) -> Result<RubberModel, SolidError> {
         let count = problem.nodes.len();
         let mut free = vec![[false; 3]; count];
         for node in problem.elements.as_flattened() {
             free[*node as usize] = [true; 3];
         }
-        for &Prescribed { node, axis, .. } in &problem.prescribed {
-            let of = free.get_mut(node as usize).ok_or(SolidError::NoSuchNode { node, count })?;
-            let of = of.get_mut(axis).ok_or(SolidError::NoSuchAxis { node, axis })?;
-            if !*of {
-                return Err(SolidError::PrescribedTwice { node, axis }.into());
-            }
-            *of = false;
-        }
-        for (node, _) in problem.loads.iter().flat_map(|load| &load.forces) {
-            if *node as usize >= count {
-                return Err(SolidError::NoSuchNode { node: *node, count }.into());
-            }
-        }
+        take_prescribed(&problem.prescribed, &problem.loads, &mut free)?;
         let (patches, patches_of) = averaged.unwrap_or_else(|| patches(&problem, &tets));
         let unknowns = Unknowns::over(&problem.nodes, lists(&patches), &free, Ordering::Cheapest);
         Ok(RubberModel { problem, tets, patches, patches_of, unknowns, mass: Vec::new() })
@@ -143,6 +132,11 @@ impl RubberModel {
             }
         }
         self
+    }
+
+    /// Error of a factorisation of the stiffness at rest.
+    pub(crate) fn at_rest(&self, error: FactorError) -> SolidError {
+        at_rest(error, &self.problem.nodes, &Labels::default(), &self.unknowns)
     }
 
     /// An empty stiffness over the unknowns.
@@ -173,14 +167,7 @@ impl RubberModel {
 
     /// Adds the loads at a moment, N.
     pub fn add_loads(&self, at: Moment, forces: &mut [Vec3]) {
-        for load in &self.problem.loads {
-            let factor = at.value(&load.profile);
-            for (node, force) in &load.forces {
-                for i in 0..3 {
-                    forces[*node as usize][i] += factor * force[i];
-                }
-            }
-        }
+        add_loads(&self.problem.loads, |profile| at.value(profile), forces);
     }
 
     /// Times at which a prescribed displacement or a load changes its slope, ascending.

@@ -1,24 +1,15 @@
 //! Newton's method for the equilibrium of a solid of rubber at the end of a step.
 
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::Sym3;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::sparse::FactorError;
-use crate::plan::Stage;
-use crate::plan::counts::Counts;
-use crate::solids::rubber::error::{RubberError, StepFailure, at_rest};
+use crate::solids::error::{SolidError, StepFailure};
+use crate::solids::newton::{Convergence, Unbalanced, add_solution, converge};
 use crate::solids::rubber::model::{Moment, RubberModel};
 use crate::solids::rubber::tangent::{StepLaw, Tangent, add_forces};
-use crate::solids::tangent::PRESCRIBED;
-
-/// Force residual.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Unbalanced {
-    /// Largest on an unknown, N.
-    pub largest: f64,
-    /// Largest force at work, N.
-    pub scale: f64,
-}
 
 /// A search for equilibrium: displacements and working memory.
 pub struct Search<'a> {
@@ -43,23 +34,6 @@ pub struct Search<'a> {
     pub ran: Counts,
 }
 
-/// Convergence criteria of a search.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Convergence {
-    /// Largest force residual over the largest force.
-    pub tolerance: f64,
-    /// The same if it falls no further because of rounding.
-    pub rounding: f64,
-    pub most_iterations: usize,
-}
-
-impl Default for Convergence {
-    fn default() -> Self {
-        // Forces of a step are accurate to 1e-3; rounding at B = 1e5 C_R is some 1e-9.
-        Convergence { tolerance: 1e-9, rounding: 1e-7, most_iterations: 20 }
-    }
-}
-
 impl<'a> Search<'a> {
     /// At rest.
     pub fn new(model: &'a RubberModel) -> Search<'a> {
@@ -81,23 +55,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Adds the solution to the unknowns.
-    fn advance(&mut self) {
-        for (u, of) in self.displacement.iter_mut().zip(&self.model.unknowns.of) {
-            for i in 0..3 {
-                if of[i] != PRESCRIBED {
-                    u[i] += self.right[of[i]];
-                }
-            }
-        }
-    }
-
     /// Moves the prescribed components to their values at a moment, and the others by the tangent in the present state.
     ///
     /// # Errors
     ///
     /// Those of [`Search::converge`].
-    pub fn predict(&mut self, at: Moment, law: &StepLaw) -> Result<(), Stop> {
+    pub fn predict(&mut self, at: Moment, law: &StepLaw) -> Result<(), SolidError> {
         let unbalanced = self.balance(at, law)?;
         let before = std::mem::take(&mut self.displacement);
         self.moves.copy_from_slice(&before);
@@ -108,16 +71,14 @@ impl<'a> Search<'a> {
         let outcome =
             self.tangent.refresh(self.model, law, &before, Some((&self.moves, &mut self.right)));
         self.displacement = before;
-        self.check_factor(outcome?, unbalanced.scale == 0.0)?;
+        self.check_factor(outcome, unbalanced.scale == 0.0)?;
         prescribe(self.model, at, &self.driven, &mut self.displacement);
-        self.tangent.solve(&mut self.right);
-        self.advance();
-        self.iterations += 1;
+        self.step();
         Ok(())
     }
 
     /// Forces in the present state, and the right-hand side.
-    fn balance(&mut self, at: Moment, law: &StepLaw) -> Result<Unbalanced, StepFailure> {
+    fn balance(&mut self, at: Moment, law: &StepLaw) -> Result<Unbalanced, SolidError> {
         self.internal.fill([0.0; 3]);
         self.loads.fill([0.0; 3]);
         add_forces(
@@ -141,30 +102,22 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        let mut found = Unbalanced::default();
-        let mut finite = true;
-        for (n, of) in self.model.unknowns.of.iter().enumerate() {
-            for i in 0..3 {
-                let (inner, outer) = (self.internal[n][i], self.loads[n][i]);
-                found.scale = found.scale.max(inner.abs()).max(outer.abs());
-                finite &= inner.is_finite() && outer.is_finite();
-                if of[i] != PRESCRIBED {
-                    self.right[of[i]] = inner + outer;
-                    found.largest = found.largest.max((inner + outer).abs());
-                }
-            }
-        }
-        if finite { Ok(found) } else { Err(StepFailure::NotFinite) }
+        let forces = [&self.internal[..], &self.loads];
+        Ok(Unbalanced::of(&self.model.unknowns, forces, 1.0, &mut self.right)?)
     }
 
-    fn check_factor(&self, outcome: Result<(), FactorError>, rest: bool) -> Result<(), Stop> {
-        match outcome {
-            Ok(()) => Ok(()),
-            Err(FactorError::NotPositiveDefinite { .. }) if !rest => {
-                Err(Stop::Step(StepFailure::Unstable))
+    pub fn check_factor(
+        &self,
+        outcome: Result<(), SolidError>,
+        rest: bool,
+    ) -> Result<(), SolidError> {
+        outcome.map_err(|error| match error {
+            SolidError::Factor(FactorError::NotPositiveDefinite { .. }) if !rest => {
+                StepFailure::Unstable.into()
             }
-            Err(error) => Err(Stop::All(at_rest(error))),
-        }
+            SolidError::Factor(error) => self.model.at_rest(error),
+            error => error,
+        })
     }
 
     /// Newton iterations at a moment from the present displacements, with the factors of an earlier state as long as
@@ -178,35 +131,24 @@ impl<'a> Search<'a> {
         at: Moment,
         law: &StepLaw,
         options: &Convergence,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), SolidError> {
         prescribe(self.model, at, &self.driven, &mut self.displacement);
         self.ran.add(Stage::Supports, self.model.problem.prescribed.len() as u64);
-        let mut last = f64::INFINITY;
-        let mut fresh = false;
-        for iteration in 0..=options.most_iterations {
-            let Unbalanced { largest, scale } = self.balance(at, law)?;
-            let stagnates = fresh && largest > 0.5 * last && largest <= options.rounding * scale;
-            if largest <= options.tolerance * scale || stagnates {
-                return Ok(());
-            }
-            let diverged = iteration > 3 && largest > 1e3 * last;
-            if iteration == options.most_iterations || diverged {
-                let (residual, iterations) = (largest, iteration);
-                return Err(StepFailure::NotConverged { residual, scale, iterations }.into());
-            }
-            fresh = !self.tangent.serves(law) || largest > 0.1 * last;
-            if fresh {
-                let displacement = std::mem::take(&mut self.displacement);
-                let outcome = self.tangent.refresh(self.model, law, &displacement, None);
-                self.displacement = displacement;
-                self.check_factor(outcome?, false)?;
-            }
-            last = largest;
-            self.tangent.solve(&mut self.right);
-            self.advance();
-            self.iterations += 1;
-        }
-        unreachable!("the loop returns at its last iteration")
+        let factorise = |search: &mut Self| {
+            let displacement = std::mem::take(&mut search.displacement);
+            let outcome = search.tangent.refresh(search.model, law, &displacement, None);
+            search.displacement = displacement;
+            search.check_factor(outcome, false)
+        };
+        let serves = |search: &Self| search.tangent.serves(law);
+        let balance = |search: &mut Self| search.balance(at, law);
+        converge(self, options, balance, serves, factorise, Search::step).map(|_| ())
+    }
+
+    fn step(&mut self) {
+        self.tangent.solve(&mut self.right);
+        add_solution(&self.model.unknowns, &self.right, &mut self.displacement);
+        self.iterations += 1;
     }
 
     /// Forces in a state that was in equilibrium at a moment, after a search for another one.
@@ -233,24 +175,5 @@ fn prescribe(model: &RubberModel, at: Moment, driven: &[(u32, Vec3)], displaceme
     model.prescribe(at, displacement);
     for (node, place) in driven {
         displacement[*node as usize] = *place;
-    }
-}
-
-/// Failure of a step, with or without a chance for smaller steps.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Stop {
-    Step(StepFailure),
-    All(RubberError),
-}
-
-impl From<RubberError> for Stop {
-    fn from(error: RubberError) -> Stop {
-        Stop::All(error)
-    }
-}
-
-impl From<StepFailure> for Stop {
-    fn from(failure: StepFailure) -> Stop {
-        Stop::Step(failure)
     }
 }

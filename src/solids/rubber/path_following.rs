@@ -3,11 +3,9 @@
 
 use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use crate::kinematics::vec3::{Vec3, dot};
-use crate::numeric::sparse::FactorError;
+use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::model::corners;
-use crate::solids::rubber::error::{StepFailure, at_rest};
 use crate::solids::rubber::measures::network_energy;
-use crate::solids::rubber::newton::Stop;
 use crate::solids::rubber::steps::RubberSolid;
 use crate::solids::rubber::tangent::StepLaw;
 
@@ -25,7 +23,7 @@ pub struct PathLimits {
 
 impl RubberSolid<'_> {
     /// Checks that the solution of [`RubberSolid::equilibrium`] is close, without a jump, and stable.
-    pub(crate) fn check_path(&mut self, way: PathLimits, step: f64) -> Result<(), Stop> {
+    pub(crate) fn check_path(&mut self, way: PathLimits, step: f64) -> Result<(), SolidError> {
         let strain = self.strain_of_step();
         let near = strain <= way.strain || step <= way.short;
         if !near {
@@ -41,11 +39,8 @@ impl RubberSolid<'_> {
         }
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
         let (model, displacement) = (self.search.model, &self.search.displacement);
-        match self.search.tangent.refresh(model, &law, displacement, None)? {
-            Ok(()) => Ok(()),
-            Err(FactorError::NotPositiveDefinite { .. }) => Err(StepFailure::Unstable.into()),
-            Err(error) => Err(Stop::All(at_rest(error))),
-        }
+        let outcome = self.search.tangent.refresh(model, &law, displacement, None);
+        self.search.check_factor(outcome, false)
     }
 
     /// Change of Green's strain, root mean square over the body.

@@ -1,11 +1,11 @@
 //! The relaxed equilibrium of a solid of rubber, long after all loads.
 
-use crate::kinematics::vec3::Vec3;
-use crate::numeric::profile::Profile;
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
+use crate::kinematics::vec3::Vec3;
+use crate::numeric::profile::Profile;
+use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::rubber::checkpoint::RubberState;
-use crate::solids::rubber::error::{RubberError, StepFailure};
 use crate::solids::rubber::measures::network_energy;
 use crate::solids::rubber::model::RubberModel;
 use crate::solids::rubber::path_following::PathLimits;
@@ -31,7 +31,7 @@ pub struct Relaxed {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RelaxedError {
     #[error(transparent)]
-    Rubber(#[from] RubberError),
+    Rubber(#[from] SolidError),
     #[error(
         "no equilibrium was found beyond {:.3} % of the given loads and displacements: {failure}", 100.0 * part
     )]
@@ -96,10 +96,10 @@ pub fn relaxed_while(
     });
     match ended {
         Ok(()) => {}
-        Err(RubberError::NoEquilibrium { time, failure, .. }) => {
+        Err(SolidError::NoEquilibrium { time, failure, .. }) => {
             return Err(RelaxedError::Lost { part: time, failure, reached });
         }
-        Err(RubberError::Stopped { time }) => {
+        Err(SolidError::Stopped { time }) => {
             return Err(RelaxedError::Stopped { part: time, reached });
         }
         Err(other) => return Err(other.into()),

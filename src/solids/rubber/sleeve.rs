@@ -5,8 +5,8 @@ use crate::kinematics::vec3::Vec3;
 use crate::mesh::generate::Part;
 use crate::mesh::{Elements, TetMesh};
 use crate::numeric::profile::Profile;
+use crate::solids::error::SolidError;
 use crate::solids::model::Prescribed;
-use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::harmonic::{ComplexStiffness, complex_stiffness};
 use crate::solids::rubber::model::{RubberModel, RubberProblem, supports};
 
@@ -92,8 +92,8 @@ pub fn sleeve_stiffness(
     motion: SleeveMotion,
     pulsations: &[f64],
     tolerance: f64,
-) -> Result<Vec<ComplexStiffness>, RubberError> {
-    let Elements::Quadratic(elements) = &mesh.elements else { return Err(RubberError::FourNodes) };
+) -> Result<Vec<ComplexStiffness>, SolidError> {
+    let Elements::Quadratic(elements) = &mesh.elements else { return Err(SolidError::FourNodes) };
     let model = RubberModel::new(RubberProblem {
         nodes: mesh.nodes.clone(),
         elements: elements.clone(),

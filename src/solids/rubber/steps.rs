@@ -4,17 +4,19 @@
 //! stresses, and with that the length of the next step. Steps end at the corners of loads and prescribed displacements;
 //! behind a corner there is no second difference, so that a pair of steps is taken and judged together.
 
+use crate::plan::counts::Counts;
 use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors};
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::Sym3;
 use crate::kinematics::vec3::Vec3;
-use crate::plan::counts::Counts;
+use crate::solids::error::{SolidError, StepFailure};
+use crate::solids::newton::Convergence;
 use crate::solids::rubber::checkpoint::{RubberCheckpoint, RubberState};
-use crate::solids::rubber::error::{RubberError, StepFailure};
 use crate::solids::rubber::model::{Moment, RubberModel};
-use crate::solids::rubber::newton::{Convergence, Search, Stop};
+use crate::solids::rubber::newton::Search;
 use crate::solids::rubber::path_following::PathLimits;
 use crate::solids::rubber::tangent::StepLaw;
+use serde::{Deserialize, Serialize};
 
 /// Choice of the step size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,14 +40,15 @@ pub struct StepOptions {
 
 impl Default for StepOptions {
     fn default() -> Self {
-        let convergence = Convergence::default();
+        // Forces of a step are accurate to 1e-3; rounding at B = 1e5 C_R is some 1e-9.
+        let convergence = Convergence { tolerance: 1e-9, rounding: 1e-7, most_iterations: 20 };
         let stepping = Stepping::Accuracy(1e-4);
         StepOptions { stepping, smallest: 1e-9, way: None, convergence }
     }
 }
 
 /// Number of steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepCounts {
     pub accepted: u64,
     /// Rejected for want of an equilibrium or for a large error.
@@ -77,13 +80,13 @@ impl<'a> RubberSolid<'a> {
     pub fn new(
         model: &'a RubberModel,
         options: StepOptions,
-    ) -> Result<RubberSolid<'a>, RubberError> {
+    ) -> Result<RubberSolid<'a>, SolidError> {
         let (what, value) = match options.stepping {
             Stepping::Fixed(step) => ("step", step),
             Stepping::Accuracy(accuracy) => ("accuracy", accuracy),
         };
         if !(value > 0.0 && value.is_finite()) {
-            return Err(RubberError::Option { what, value });
+            return Err(SolidError::Option { what, value });
         }
         let state = RubberState::rest(model);
         Ok(RubberSolid {
@@ -138,19 +141,14 @@ impl<'a> RubberSolid<'a> {
     /// # Panics
     ///
     /// If the checkpoint has another number of nodes or points.
-    pub fn restore(&mut self, kept: &RubberCheckpoint) -> Result<(), RubberError> {
+    pub fn restore(&mut self, kept: &RubberCheckpoint) -> Result<(), SolidError> {
         self.state.clone_from(&kept.state);
         (self.next, self.scale, self.counts) = (kept.next, kept.scale, kept.counts);
         self.restore_forces();
         let outcome = self.search.tangent.restore(self.search.model, kept.factored.as_ref());
         self.search.iterations = kept.iterations;
         self.search.tangent.factorisations = kept.factorisations;
-        outcome.map_err(|stop| match stop {
-            Stop::All(error) => error,
-            Stop::Step(failure) => {
-                RubberError::NoEquilibrium { time: self.state.time, step: 0.0, failure }
-            }
-        })
+        outcome.map_err(|error| self.refused(error, 0.0))
     }
 
     /// Number of runs of each stage.
@@ -189,13 +187,13 @@ impl<'a> RubberSolid<'a> {
     ///
     /// # Errors
     ///
-    /// [`RubberError::NoEquilibrium`] if no step however small ends in equilibrium; the state is then that of the last
+    /// [`SolidError::NoEquilibrium`] if no step however small ends in equilibrium; the state is then that of the last
     /// step that did. An end that is not finite.
     pub fn advance(
         &mut self,
         until: f64,
         mut watch: impl FnMut(&RubberSolid),
-    ) -> Result<(), RubberError> {
+    ) -> Result<(), SolidError> {
         self.advance_while(until, |solid| {
             watch(solid);
             true
@@ -206,14 +204,14 @@ impl<'a> RubberSolid<'a> {
     ///
     /// # Errors
     ///
-    /// The same; [`RubberError::Stopped`].
+    /// The same; [`SolidError::Stopped`].
     pub fn advance_while(
         &mut self,
         until: f64,
         mut watch: impl FnMut(&RubberSolid) -> bool,
-    ) -> Result<(), RubberError> {
+    ) -> Result<(), SolidError> {
         if !until.is_finite() {
-            return Err(RubberError::Option { what: "end of the run", value: until });
+            return Err(SolidError::Option { what: "end of the run", value: until });
         }
         if self.counts == StepCounts::default() {
             self.sudden_change(&mut watch)?;
@@ -235,7 +233,7 @@ impl<'a> RubberSolid<'a> {
     fn sudden_change(
         &mut self,
         watch: &mut impl FnMut(&RubberSolid) -> bool,
-    ) -> Result<(), RubberError> {
+    ) -> Result<(), SolidError> {
         let time = self.state.time;
         if !self.search.model.jumps(time) {
             return Ok(());
@@ -250,17 +248,17 @@ impl<'a> RubberSolid<'a> {
                     part *= 2.0;
                     reached.copy_from_slice(&self.search.displacement);
                 }
-                Err(Stop::All(error)) => return Err(error),
-                Err(Stop::Step(failure)) => {
+                Err(SolidError::Failed(failure)) => {
                     self.counts.undone += 1;
                     self.search.tangent.forget();
                     part *= 0.5;
                     let gone = part >= self.options.smallest;
                     if !gone {
                         self.restore_forces();
-                        return Err(RubberError::NoEquilibrium { time, step: 0.0, failure });
+                        return Err(SolidError::NoEquilibrium { time, step: 0.0, failure });
                     }
                 }
+                Err(error) => return Err(error),
             }
         }
         self.accept(0.0, time);
@@ -269,7 +267,7 @@ impl<'a> RubberSolid<'a> {
 
     /// Equilibrium at a fraction of a jump, from the one before. Nothing relaxes meanwhile, so that the path is
     /// irrelevant.
-    fn sudden_part(&mut self, at: Moment, from: &[Vec3]) -> Result<(), Stop> {
+    fn sudden_part(&mut self, at: Moment, from: &[Vec3]) -> Result<(), SolidError> {
         self.set_history(0.0)?;
         let law = StepLaw { gain: self.factors.total_gain, carried: &self.carried, inertia: 0.0 };
         self.search.displacement.copy_from_slice(from);
@@ -282,7 +280,7 @@ impl<'a> RubberSolid<'a> {
         &mut self,
         end: f64,
         watch: &mut impl FnMut(&RubberSolid) -> bool,
-    ) -> Result<(), RubberError> {
+    ) -> Result<(), SolidError> {
         let smallest = self.options.smallest * (end - self.state.time);
         let mut longest = f64::INFINITY;
         // Failure of a step, and the end of that step.
@@ -315,8 +313,7 @@ impl<'a> RubberSolid<'a> {
                     };
                     self.shown(watch)?;
                 }
-                Err(Stop::All(error)) => return Err(error),
-                Err(Stop::Step(failure)) => {
+                Err(SolidError::Failed(failure)) => {
                     self.counts.undone += 1;
                     self.search.tangent.forget();
                     self.next = 0.5 * step;
@@ -334,16 +331,17 @@ impl<'a> RubberSolid<'a> {
                         self.restore_forces();
                         let time = self.state.time;
                         let failure = stopped.map_or(failure, |(_, failure)| failure);
-                        return Err(RubberError::NoEquilibrium { time, step, failure });
+                        return Err(SolidError::NoEquilibrium { time, step, failure });
                     }
                 }
+                Err(error) => return Err(error),
             }
         }
         Ok(())
     }
 
-    fn shown(&self, watch: &mut impl FnMut(&RubberSolid) -> bool) -> Result<(), RubberError> {
-        if watch(self) { Ok(()) } else { Err(RubberError::Stopped { time: self.state.time }) }
+    fn shown(&self, watch: &mut impl FnMut(&RubberSolid) -> bool) -> Result<(), SolidError> {
+        if watch(self) { Ok(()) } else { Err(SolidError::Stopped { time: self.state.time }) }
     }
 
     pub(crate) fn judges(&self) -> bool {

@@ -5,12 +5,11 @@ use crate::elements::tet10::POINTS;
 use crate::elements::tet10_nodal::{self, Response, Stiffness};
 use crate::kinematics::strain::Sym3;
 use crate::kinematics::vec3::{Vec3, add_scaled};
-use crate::numeric::sparse::{Entry, Factor, FactorError, SymmetricMatrix};
+use crate::numeric::sparse::{Entry, Factor, SymmetricMatrix};
+use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::model::corners;
 use crate::solids::rubber::checkpoint::Factored;
-use crate::solids::rubber::error::{StepFailure, at_rest};
 use crate::solids::rubber::model::{Patch, RubberModel, centre};
-use crate::solids::rubber::newton::Stop;
 use crate::solids::tangent::PRESCRIBED;
 
 /// Deviatoric stress at the end of a step: (1 + `gain`) DEV S plus the relaxed history of each quadrature point, Pa.
@@ -48,7 +47,7 @@ pub fn mean_stresses(
         let (_, changes, inverted) = tet10_nodal::strains(tet, &corners(displacement, nodes));
         if let Some(ratio) = inverted {
             let at = centre(&model.problem, index);
-            return Err(StepFailure::Inverted { element: index + 1, at, ratio });
+            return Err(StepFailure::Inverted { element: index as u64 + 1, at, ratio });
         }
         let sums = tet10_nodal::at_corners(tet, &changes);
         for (patch, sum) in model.patches_of[index].iter().zip(sums) {
@@ -108,7 +107,7 @@ pub(crate) fn in_element(
     element: usize,
 ) -> impl Fn(ElastomerError) -> StepFailure {
     let at = centre(&model.problem, element);
-    move |source| StepFailure::Material { element: element + 1, at, source }
+    move |source| StepFailure::Material { element: element as u64 + 1, at, source }
 }
 
 /// Stiffness of one element in a state at given mean stresses, N/m.
@@ -182,11 +181,15 @@ impl Tangent {
     /// # Errors
     ///
     /// Those of [`Tangent::refresh`]; never in a state that was factorised before.
-    pub fn restore(&mut self, model: &RubberModel, of: Option<&Factored>) -> Result<(), Stop> {
+    pub fn restore(
+        &mut self,
+        model: &RubberModel,
+        of: Option<&Factored>,
+    ) -> Result<(), SolidError> {
         self.is_sound = false;
         let Some(Factored { gain, inertia, displacement, carried }) = of else { return Ok(()) };
         let law = StepLaw { gain: *gain, carried, inertia: *inertia };
-        self.refresh(model, &law, displacement, None)?.map_err(at_rest).map_err(Stop::All)
+        self.refresh(model, &law, displacement, None)
     }
 
     /// Drops the factors of a failed search.
@@ -206,7 +209,7 @@ impl Tangent {
         law: &StepLaw,
         displacement: &[Vec3],
         mut moves: Option<(&[Vec3], &mut [f64])>,
-    ) -> Result<Result<(), FactorError>, StepFailure> {
+    ) -> Result<(), SolidError> {
         self.matrix.clear();
         mean_stresses(model, displacement, &mut self.means)?;
         for (index, nodes) in model.problem.elements.iter().enumerate() {
@@ -251,7 +254,7 @@ impl Tangent {
         };
         // Failed factors are invalid.
         self.is_sound = outcome.is_ok();
-        Ok(outcome)
+        Ok(outcome?)
     }
 
     /// Adds the stiffness of the mean stress at one corner node: the product of a vector with itself.

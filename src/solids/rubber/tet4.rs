@@ -7,8 +7,8 @@
 
 use crate::elements::tet4::Tet4;
 use crate::elements::tet10::{POINTS, Point, Tet10};
+use crate::solids::error::SolidError;
 use crate::solids::model::corners;
-use crate::solids::rubber::error::RubberError;
 use crate::solids::rubber::explicit::RubberBody;
 use crate::solids::rubber::model::{Patch, RubberModel, RubberProblem};
 use crate::solids::rubber::tet_forces::MeanStress;
@@ -19,7 +19,7 @@ impl RubberBody {
     /// # Errors
     ///
     /// Those of [`RubberBody::model`] and [`RubberModel::new`].
-    pub fn implicit(&self) -> Result<RubberModel, RubberError> {
+    pub fn implicit(&self) -> Result<RubberModel, SolidError> {
         // Checks elements and supports.
         self.model()?;
         let sound = "elements were checked when the model was made";

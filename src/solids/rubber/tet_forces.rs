@@ -14,7 +14,8 @@ use crate::elements::tet4_nodal;
 use crate::kinematics::number::Number;
 use crate::kinematics::strain::{Sym3, green_lagrange, volume_change};
 use crate::kinematics::vec3::Vec3;
-use crate::solids::model::{SolidError, SolidModel, centre};
+use crate::solids::error::SolidError;
+use crate::solids::model::{SolidModel, centre};
 use crate::solids::tet4_blocks::{Block, LANES, Lanes, Node, blocks};
 use std::cell::Cell;
 

@@ -1,9 +1,9 @@
 //! Small vibrations of a bushing over frequency: its dynamic stiffness and damping (3.13)–(3.14).
 
-use crate::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
-use crate::solids::rubber::error::RubberError;
+use crate::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
+use crate::solids::error::SolidError;
 use crate::solids::rubber::harmonic::{ComplexStiffness, complex_stiffness};
 use crate::solids::rubber::model::RubberModel;
 use std::f64::consts::TAU;
@@ -29,7 +29,7 @@ pub fn vibrations(
     model: &RubberModel,
     frequencies: &[f64],
     ran: &mut Counts,
-) -> Result<Vec<Answer>, RubberError> {
+) -> Result<Vec<Answer>, SolidError> {
     let pulsations: Vec<f64> = frequencies.iter().map(|frequency| TAU * frequency).collect();
     let answers = complex_stiffness(model, 0.0, &pulsations, TOLERANCE)?;
     ran.add(Stage::LinearSystem, frequencies.len() as u64);
