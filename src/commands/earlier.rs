@@ -3,7 +3,7 @@
 use super::{pictures, print};
 use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::folder::{FolderContent, ResultsFolder, claim, content};
-use bearing_dynamics::output::{json, state};
+use bearing_dynamics::output::{fields, json, state};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
