@@ -14,7 +14,7 @@ use crate::equilibrium::statics::{
 };
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
-use crate::members::body::{FARTHEST, all_prescribed, is_fixed};
+use crate::members::body::{DrivenBody, FARTHEST, is_fixed};
 use crate::members::connection::Connection;
 use crate::members::mount::Mount;
 use nalgebra::{SVector, Vector3};
@@ -64,8 +64,7 @@ pub(crate) fn at(
     let mut following = FollowerLoadRounds::new(assembly, &plain, t, tilts);
     let mut rounds = 0;
     loop {
-        let mut found = search(&following.loaded(&plain), near.as_deref(), &options)?;
-        impose_prescribed(assembly, t, &mut found);
+        let found = search(&following.loaded(&plain), near.as_deref(), &options)?;
         bend(&mut plain, &found);
         if following.follow(&plain, &found, options.tolerance) {
             return Ok(found);
@@ -98,15 +97,6 @@ fn search(
     solve_assembly(loaded, None, options)
 }
 
-/// Replaces prescribed coordinates by their exact values, without the rounding of a pose.
-fn impose_prescribed(assembly: &Assembly, t: f64, found: &mut Equilibrium) {
-    for (coordinates, body) in found.coordinates.iter_mut().zip(&assembly.bodies) {
-        if let Some(at) = body.driven().and_then(|race| all_prescribed(race, t)) {
-            *coordinates = at.into();
-        }
-    }
-}
-
 /// Coordinates as far as they are prescribed.
 fn given(assembly: &StaticAssembly) -> Vec<Five> {
     let of = |body: &StaticBody| match &body.place {
@@ -118,34 +108,11 @@ fn given(assembly: &StaticAssembly) -> Vec<Five> {
 
 /// The static problem of an assembly at time `t`; a rotating load has its present direction, unbalance is omitted.
 pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAssembly<'static> {
-    let carries_outer =
-        |body: usize| assembly.bearings.iter().any(|bearing| bearing.mounts[1].body == body);
-    let room = |body: usize| {
-        let on = assembly.bearings.iter().filter(|bearing| bearing.mounts[0].body == body);
-        let ball = on.map(|bearing| bearing.geometry.ball_radius).fold(FARTHEST, f64::min);
-        if carries_outer(body) { FARTHEST } else { ball }
-    };
     let bodies = assembly.bodies.iter().enumerate().map(|(index, body)| {
         let rest = &body.rest;
         let place = match body.driven() {
             None => fixed_at(rest),
-            Some(race) if let Some(at) = all_prescribed(race, t) => fixed_at(&at),
-            Some(race) => {
-                // A race with a fixed partner is searched in the direction of its load.
-                let alone = !carries_outer(index)
-                    && assembly.bearings.len() == 1
-                    && rest[0] == 0.0
-                    && assembly.bearings[0].mounts.iter().all(Mount::is_direct)
-                    && is_fixed(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
-                Place::Loaded(Loaded {
-                    axes: None,
-                    conditions: conditions(assembly, body, race, t),
-                    springs: race.foundation_stiffness,
-                    rest: *rest,
-                    start: (!alone).then_some(*rest),
-                    room: room(index),
-                })
-            }
+            Some(race) => Place::Loaded(loaded(assembly, index, race, t)),
         };
         StaticBody { name: body.name.clone(), place }
     });
@@ -169,6 +136,28 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
     };
     sections::add(assembly, t, &mut still);
     still
+}
+
+/// A driven body, with springs and room.
+fn loaded(assembly: &Assembly, index: usize, race: &DrivenBody, t: f64) -> Loaded {
+    let body = &assembly.bodies[index];
+    let carries_outer = assembly.bearings.iter().any(|bearing| bearing.mounts[1].body == index);
+    let on = assembly.bearings.iter().filter(|bearing| bearing.mounts[0].body == index);
+    let ball = on.map(|bearing| bearing.geometry.ball_radius).fold(FARTHEST, f64::min);
+    // A race with a fixed partner is searched in the direction of its load.
+    let alone = !carries_outer
+        && assembly.bearings.len() == 1
+        && body.rest[0] == 0.0
+        && assembly.bearings[0].mounts.iter().all(Mount::is_direct)
+        && is_fixed(&assembly.bodies[assembly.bearings[0].mounts[1].body]);
+    Loaded {
+        axes: None,
+        conditions: conditions(assembly, body, race, t),
+        springs: race.foundation_stiffness,
+        rest: body.rest,
+        start: (!alone).then_some(body.rest),
+        room: if carries_outer { FARTHEST } else { ball },
+    }
 }
 
 fn fixed_at(at: &[f64; 5]) -> Place {

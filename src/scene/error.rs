@@ -207,7 +207,7 @@ pub enum Problem {
     )]
     ClearanceTooLarge { what: &'static str, clearance: f64, ball_radius: f64, advice: &'static str },
     #[error(
-        "the nominal size {} differs from the {} that follows from the clearance by more than 5 % of the ball radius. \
+        "the nominal size {} differs from the {} that follows from the other sizes and the clearance. \
          Allowed: {} to {}. Hint: check it, or leave it out so that it follows",
         mm(*.nominal), mm(*.derived), mm(*.derived - *.allowed), mm(*.derived + *.allowed)
     )]

@@ -15,7 +15,8 @@ pub struct Critical {
 
 impl RotorModel {
     /// All undamped critical speeds, ascending. Motions e^{iΩt} at spin Ω satisfy K p = Ω² A p with A = 1 − iG, a
-    /// Hermitian problem, so that none is missed. Rigid modes z without stiffness follow so that their load vanishes,
+    /// Hermitian problem for a symmetric K, so that none is missed; [`RotorModel::with_circulation`] adds the
+    /// skew-symmetric part of K. Rigid modes z without stiffness follow so that their load vanishes,
     /// A_zz p_z = −A_zb p_b, and leave A_bb − A_bz A_zz⁻¹ A_zb for the others.
     ///
     /// # Errors
@@ -73,10 +74,51 @@ impl RotorModel {
             modal.unscale_mut(norm);
             found.push(Critical { speed, whirl: self.motion(Complex::new(0.0, speed), modal) });
         }
+        let skew = &self.stiffness - self.stiffness.transpose();
+        if skew.amax() > CIRCULATES * self.stiffness.amax() {
+            found = self.with_circulation(found)?;
+        }
         found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok((found, loose))
     }
+
+    /// Crossings of the lines of undamped whirl with ω = Ω, found by secants from critical speeds with the symmetric
+    /// part of the stiffness. A mode that no longer oscillates has none.
+    fn with_circulation(&self, symmetric: Vec<Critical>) -> Result<Vec<Critical>, RotorError> {
+        let modes = self.natural.len();
+        let none = DMatrix::zeros(modes, modes);
+        let undamped = RotorModel { damping: none.clone(), circulating: none, ..self.clone() };
+        let mut found = Vec::with_capacity(symmetric.len());
+        for Critical { mut speed, mut whirl } in symmetric {
+            let mut before: Option<[f64; 2]> = None;
+            for _ in 0..SECANTS {
+                let alike = |of: &Whirl| of.modal.dotc(&whirl.modal).norm() / of.modal.norm();
+                let at_speed = undamped.whirls(speed, modes)?;
+                let Some(nearest) =
+                    at_speed.into_iter().max_by(|a, b| alike(a).total_cmp(&alike(b)))
+                else {
+                    break;
+                };
+                whirl = nearest;
+                let gap = whirl.frequency() - speed;
+                if gap.abs() <= CROSSES * speed {
+                    found.push(Critical { speed, whirl });
+                    break;
+                }
+                let slope = before.map_or(-1.0, |[at, had]| (gap - had) / (speed - at));
+                before = Some([speed, gap]);
+                speed -= gap / slope;
+            }
+        }
+        Ok(found)
+    }
 }
+
+/// Skew-symmetric stiffness below this fraction of the largest stiffness is rounding.
+const CIRCULATES: f64 = 1e-12;
+/// Relative distance of frequency and speed at a crossing, and secants after which there is none: 5 are usual.
+const CROSSES: f64 = 1e-10;
+const SECANTS: usize = 30;
 
 /// Below this 1 − J/I of a rigid mode is rounding of equal inertias.
 const SPHERE: f64 = 1e-9;

@@ -19,7 +19,7 @@ pub struct Whirl {
     /// without deflection).
     pub shape: Vec<[Complex<f64>; STATION]>,
     /// The same over the modes at rest, of norm 1.
-    modal: DVector<Complex<f64>>,
+    pub(crate) modal: DVector<Complex<f64>>,
 }
 
 impl Whirl {

@@ -194,21 +194,24 @@ fn a_point_of_a_sweep_is_its_own_equilibrium() {
         .replace("clearance = { radial = \"10 um\" }\n", "");
     let housed =
         housed_command_common::scene_text("method = \"quasi-static\"\nfit.radial = \"1 um\"\n", "");
+    let held = scene(
+        "",
+        &format!(
+            "{FOUNDATION}[inner_race]\nx = {{ displacement = \"3 um\" }}\ny = {{ displacement = \"0 mm\" }}\n\
+             z = {{ displacement = \"0 mm\" }}\ntilt_y = {{ tilt = \"0.01 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n"
+        ),
+    );
     let cases = [
+        (held, "inner_race.z.displacement", ["-25 um", "-30 um"], 0),
         (overloaded, "inner_race.x.load", ["-20 kN", "-30 kN"], 3),
         (housed, "solid.material.youngs_modulus", ["100 GPa", "205 GPa"], 0),
     ];
     for (number, (content, key, values, codes)) in cases.into_iter().enumerate() {
         let path = write(root.path(), &format!("scene{number}.toml"), &content);
         let out = root.path().join(format!("sweep{number}"));
-        done(&[
-            "sweep",
-            &path,
-            "--vary",
-            &format!("{key}={}", values.join(", ")),
-            "--out",
-            &text(&out),
-        ]);
+        let varied = format!("{key}={}", values.join(", "));
+        let other = "output.plots=[]";
+        done(&["sweep", &path, "--vary", &varied, "--set", other, "--out", &text(&out)]);
         let table = read(&out.join("sweep.csv"));
         let names: Vec<&str> = table
             .lines()
@@ -233,6 +236,14 @@ fn a_point_of_a_sweep_is_its_own_equilibrium() {
                 let close = (found - expected).abs() <= 1e-9 * expected.abs() + 1e-12;
                 assert!(close, "{key} {axis}: {found} {expected}");
             }
+            let loads = ["load_x", "load_y", "load_z", "moment_y", "moment_z"];
+            let keys = ["x", "y", "z", "tilt_y", "tilt_z"];
+            for (column, key) in loads.iter().zip(keys) {
+                let expected = summary["inner_race"]["loads"][key]["value"].as_f64().unwrap();
+                // Hundreds of newtons from another start.
+                let close = (cell(column) - expected).abs() <= 1e-6 * (1.0 + expected.abs());
+                assert!(close, "{key}={value} {column}: {} {expected}", cell(column));
+            }
             places.push(["x", "y", "z"].map(cell));
             let warnings = summary["warnings"].as_array().unwrap();
             let mut numbers: Vec<u32> = warnings
@@ -246,5 +257,52 @@ fn a_point_of_a_sweep_is_its_own_equilibrium() {
             assert!(value != values[1] || numbers.len() >= codes, "{numbers:?}");
         }
         assert_ne!(places[0], places[1], "{key}");
+    }
+}
+
+const FOUNDATION: &str = "[outer_race]\nmotion = \"5-dof\"\n[outer_race.foundation]\nstiffness = { x = \"2e7 N/m\", y = \"3e7 N/m\", \
+    z = \"5e7 N/m\", tilt_y = \"1e5 N m/rad\", tilt_z = \"2e5 N m/rad\" }\n";
+
+/// The loads of a prescribed position bring the inner race back there, also through what its outer race stands on.
+#[test]
+fn loads_of_a_prescribed_position_lead_back_to_it() {
+    let keys = ["x", "y", "z", "tilt_y", "tilt_z"];
+    let conditions = |name: &str, values: [f64; 5], units: [&str; 2]| {
+        let of = |i: usize| {
+            format!("{} = {{ {name} = \"{:e} {}\" }}\n", keys[i], values[i], units[i / 3])
+        };
+        (0..5).map(of).collect::<String>()
+    };
+    let standing = scene("", FOUNDATION);
+    let housed = housed_command_common::scene_text("method = \"quasi-static\"", "");
+    let loads =
+        &housed_command_common::RACES[..housed_command_common::RACES.find("[outer_race]").unwrap()];
+    let housed = housed.replace(loads, "");
+    assert!(!housed.contains("[inner_race]"));
+    for content in [standing, housed] {
+        let there: [f64; 5] = [9e-6, 6e-6, -28e-6, 1.5e-4, -1e-4];
+        let tilts = [there[0], there[1], there[2], there[3].to_degrees(), there[4].to_degrees()];
+        let inner = "[inner_race]\n".to_owned() + &conditions("displacement", tilts, ["m", "deg"]);
+        let inner = inner
+            .replace("tilt_y = { displacement", "tilt_y = { tilt")
+            .replace("tilt_z = { displacement", "tilt_z = { tilt");
+        let given = format!("{content}{inner}");
+        let (summary, _) = found("statics", &given);
+        let loads = keys.map(|key| summary["inner_race"]["loads"][key]["value"].as_f64().unwrap());
+        assert!(loads[2] < -100.0, "{loads:?}");
+        let inner = "[inner_race]\n".to_owned()
+            + &conditions("load", loads, ["N", "N m"])
+                .replace("tilt_y = { load", "tilt_y = { moment")
+                .replace("tilt_z = { load", "tilt_z = { moment");
+        let (summary, _) = found("statics", &format!("{content}{inner}"));
+        for (key, at) in keys.iter().zip(there) {
+            let of = &summary["inner_race"]["position"][key];
+            let scale = if of["unit"] == "deg" { 1f64.to_radians() } else { 1.0 };
+            let position = scale * of["value"].as_f64().unwrap();
+            assert!(
+                (position - at).abs() <= 1e-7 * at.abs(),
+                "{key}: {position:e} {at:e} {loads:?}"
+            );
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Small vibrations, bending and run-ups of rotors against closed forms, from written numbers.
 
 use crate::command_line_common::{done, json, read, scene, text, write};
-use nalgebra::Matrix4;
+use nalgebra::{DMatrix, Matrix2, Matrix2x4, Matrix4};
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 use tempfile::tempdir;
@@ -67,6 +67,49 @@ fn coupled_planes_whirl_as_their_matrices_have_it() {
         modes.into_iter().find(|mode| mode[1] < 0.0).unwrap()[2]
     };
     assert!(growing(1e5) > 0.9 && growing(-1e5) < -0.9);
+}
+
+/// At each critical speed of a rigid disc beside a spring with coupled planes, an undamped mode has the frequency of
+/// the spin.
+#[test]
+fn circulatory_springs_shift_critical_speeds() {
+    let (mass, [axial, transverse], aside) = (10.0, [0.05, 0.2], 0.1);
+    let (spring, tilting) = ([[4e6, 1.5e6], [-1e6, 5e6]], 3e5);
+    let [[y, yz], [zy, z]] = spring;
+    let root = tempdir().unwrap();
+    let content = format!(
+        "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\nspeed = \"20000 rpm\"\n\
+         inertia = {{ mass = \"{mass} kg\", axial = \"{axial} kg m^2\", transverse = \"{transverse} kg m^2\" }}\n\
+         [body.rotor.foundation]\nstiffness = {{ tilt_y = \"{tilting} N m/rad\", tilt_z = \"{tilting} N m/rad\" }}\n\
+         [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\nto_at = \"{aside} m\"\nfrom_at = \"{aside} m\"\n\
+         stiffness = {{ y = \"{y} N/m\", z = \"{z} N/m\", yz = \"{yz} N/m\", zy = \"{zy} N/m\" }}\n"
+    );
+    let path = write(root.path(), "scene.toml", &content);
+    let out = root.path().join("out");
+    done(&["modes", &path, "--out", &text(&out)]);
+    let summary = json(&out.join("summary.json"));
+    let found = summary["rotor"]["critical_speeds"].as_array().unwrap();
+    // y, z, tilt_y, tilt_z: a tilt about Z lifts the end of the spring along Y, one about Y lowers it along Z.
+    let at_spring = Matrix2x4::new(1.0, 0.0, 0.0, aside, 0.0, 1.0, -aside, 0.0);
+    let stiffness = at_spring.transpose() * Matrix2::new(y, yz, zy, z) * at_spring
+        + Matrix4::from_diagonal(&[0.0, 0.0, tilting, tilting].into());
+    let inertia = [mass, mass, transverse, transverse];
+    for critical in found {
+        let speed = critical["speed"]["value"].as_f64().unwrap();
+        let mut rates = DMatrix::zeros(8, 8);
+        for i in 0..4 {
+            rates[(i, i + 4)] = 1.0;
+            (0..4).for_each(|j| rates[(i + 4, j)] = -stiffness[(i, j)] / inertia[i]);
+        }
+        rates[(6, 7)] = -speed * axial / transverse;
+        rates[(7, 6)] = speed * axial / transverse;
+        let values = rates.complex_eigenvalues();
+        let off = values.iter().map(|of| (of.im - speed).abs() / speed);
+        let off = off.fold(f64::INFINITY, f64::min);
+        assert!(off <= 1e-8, "{speed}: {off:e}");
+    }
+    // Two circles of the centre, two of the tilts.
+    assert_eq!(found.len(), 4, "{found:?}");
 }
 
 /// Each coordinate of a foundation vibrates with its own spring and dashpot.

@@ -145,7 +145,7 @@ impl Spinning {
         let grows = self.whirls.iter().filter(|whirl| whirl.damping_ratio() < -1e-9);
         let grows = grows.map(|whirl| {
             let text = format!(
-                "the whirl of {:.3} Hz grows at {:.1} rpm: reduce the speed or the internal damping, or add damping that does not rotate",
+                "the whirl of {:.3} Hz grows at {:.1} rpm: reduce the speed, the internal damping or the difference between `yz` and `zy` of a spring, or add damping that does not rotate",
                 whirl.frequency() / TAU,
                 rpm(self.whirling.top_speed)
             );

@@ -11,7 +11,7 @@ mod runs;
 mod table;
 
 use super::earlier::{Writes, claimed};
-use super::{CommandResult, Outcome, interruption, print, reach, results_folder};
+use super::{Changes, CommandResult, Outcome, interruption, print, reach, results_folder};
 use bearing_dynamics::output::Column;
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
@@ -43,6 +43,8 @@ pub struct Arguments {
     /// What to compute at each point: equilibria, or runs in folders of their own [default: sweep.of of the scene]
     #[arg(long, value_enum)]
     of: Option<Of>,
+    #[command(flatten)]
+    changes: Changes,
     /// Results folder [default: results/<name of the scene>-sweep]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -66,7 +68,7 @@ enum Of {
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let interrupted = interruption(|| {})?;
-    let document = Document::read_file(&arguments.scene)?;
+    let document = arguments.changes.read(&arguments.scene)?;
     let grid = Grid::new(&document, &arguments.vary, arguments.together)?;
     for axis in &grid.axes {
         if let Some(note) = reach(&document, "--vary", &axis.key, &axis.key)? {

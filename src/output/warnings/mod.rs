@@ -200,7 +200,7 @@ pub const TABLE: [Entry; 19] = [
         name: "W17-whirl-unstable",
         title: "Unstable whirl",
         meaning: "A whirl mode has negative damping at the top speed and grows, usually by internal damping above a critical speed.",
-        action: "Reduce the speed or the internal damping, or add damping that does not rotate.",
+        action: "Reduce the speed, the internal damping or the difference between `yz` and `zy` of a spring, or add damping that does not rotate.",
     },
     Entry {
         name: "W18-picture-not-drawn",

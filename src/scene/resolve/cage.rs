@@ -134,6 +134,21 @@ fn check_between_races(
             };
             return Err(reader.document.error("bearing.cage.race_clearance", problem));
         }
+        // Balls hold the cage only where it has more room to the races than they have in their pockets.
+        let room = cage.race_clearance.unwrap_or((other - radius) * outward);
+        if let (Some(Guidance::Balls), Some(pocket)) = (cage.guidance, cage.pocket_radius)
+            && pocket - sizes.nominal_ball_radius >= room
+        {
+            let problem = Problem::WrongOrder {
+                value: pocket - sizes.nominal_ball_radius,
+                relation: "less than",
+                other_name: "the room between the cage and a race",
+                other: room,
+                advice: "this is the room of a ball in its pocket: with so much the cage meets a race \
+                         first; write which one in `guidance`",
+            };
+            return Err(reader.document.error("bearing.cage.pocket_radius", problem));
+        }
     }
     Ok(())
 }

@@ -16,6 +16,8 @@ const THROUGH: &str = "bearing.clearance.through";
 
 /// Largest clearance, as a fraction of the ball radius: real ones are below 1 %.
 const LARGEST_CLEARANCE: f64 = 0.05;
+/// Largest rounding of a nominal size, as a fraction of the ball radius: more is another size.
+const ROUNDED: f64 = 0.01;
 
 pub(crate) fn geometry(
     reader: &mut Reader,
@@ -235,7 +237,12 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
         (OUTER, outer_given, outer),
     ];
     for (key, nominal, derived) in nominal_sizes {
-        limit_nominal(reader, key, nominal.unwrap_or(derived), derived, ball)?;
+        let nominal = nominal.unwrap_or(derived);
+        let allowed = clearance.abs() + ROUNDED * ball;
+        if !((nominal - derived).abs() <= allowed) {
+            let problem = Problem::NominalFarOff { nominal, derived, allowed };
+            return Err(reader.document.error(key, problem));
+        }
     }
     let nominal_ball = ball_given.unwrap_or(ball);
     let inner_groove = groove(reader, "bearing.inner_race", ball, nominal_ball)?;
@@ -380,21 +387,6 @@ fn limit_clearance(
     }
     let problem = Problem::ClearanceTooLarge { what, clearance, ball_radius, advice };
     Err(reader.document.error(key, problem))
-}
-
-/// The nominal size of the part that the clearance sets must be near the size it gets.
-fn limit_nominal(
-    reader: &Reader,
-    key: &str,
-    nominal: f64,
-    derived: f64,
-    ball: f64,
-) -> Result<(), SceneError> {
-    let allowed = LARGEST_CLEARANCE * ball;
-    if (nominal - derived).abs() <= allowed {
-        return Ok(());
-    }
-    Err(reader.document.error(key, Problem::NominalFarOff { nominal, derived, allowed }))
 }
 
 /// Neighbouring ball centres are 2 R_pitch sin(π/Z) apart, which must exceed a ball diameter.

@@ -258,8 +258,8 @@ inner race's groove centres on the `+X` side and the outer race's on the `-X` si
 (default 0) is the radial displacement of the inner race from there to contact, applied to the ball or a race.
 
 **Checks over several keys.** The groove radius is between 1 and 10 times the ball radius; balls fit side by side on
-the pitch circle; a ball is not larger than the cage pocket; the clearance and the difference between nominal and computed size
-are at most 5 % of the ball radius; the bore is inside and the outer radius outside the grooves; the cage's inner radius is less than its outer radius;
+the pitch circle; a ball is not larger than the cage pocket; the clearance is at most 5 % of the ball radius, and
+a nominal size differs from the computed one by at most the clearance and 1 % of the ball radius; the bore is inside and the outer radius outside the grooves; the cage's inner radius is less than its outer radius;
 displacements are at most a ball radius.
 
 ## Input of runs
@@ -320,7 +320,7 @@ balls in equilibrium with it. `rigid` fixes the outer race and does not read the
 
 **Fit.** `fit` is the interference; with `outer_radius` it is the difference from the cylinder fitted to the contact nodes. In a run an interference grows over
 `fit_ramp`; a clearance is present from the start. `statics` uses the whole fit and the loads at t = 0. With
-`ball_forces.gravity` both races have weight. A bore radius more than 5 % off the race's outer radius, or a bore off centre, is refused: was its unit mm or m?
+`ball_forces.gravity` both races have weight. A bore radius more than 1 % off the race's outer radius, or a bore off centre, is refused: was its unit mm or m?
 
 **Shape of the bore.** Fits are micrometres, and ten-node elements touch the race at mid-side nodes. For four-node elements of a file with
 `order = 2`, the mid-side nodes of the bore are placed on the cylinder through its corners, and a note is printed. A file of ten-node elements whose bore edges are

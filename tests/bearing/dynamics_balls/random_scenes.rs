@@ -72,16 +72,19 @@ pub fn scene_text(seed: u64, turns: f64) -> String {
         let (inner, outer) = (pitch - 0.4 * ball, pitch + 0.4 * ball);
         // g, of a steel ring 2.2 balls' radii long, half of it pockets.
         let mass = 7.85e-3 * std::f64::consts::PI * (outer * outer - inner * inner) * 1.1 * ball;
+        let (pocket, clearance) = (draw.between(1.01, 1.06), draw.between(0.01, 0.05));
+        let guidance = draw.pick(&["outer-race", "inner-race", "balls"]);
         text += &format!(
             "[bearing.cage]\npocket_radius = \"{} mm\"\ninner_radius = \"{inner} mm\"\n\
              outer_radius = \"{outer} mm\"\nmass = \"{mass} g\"\nlength = \"{} mm\"\n\
-             race_clearance = \"{} mm\"\nguidance = \"{}\"\npocket = \"{}\"\n",
-            ball * draw.between(1.01, 1.06),
+             guidance = \"{guidance}\"\npocket = \"{}\"\n",
+            ball * pocket,
             2.2 * ball,
-            ball * draw.between(0.01, 0.05),
-            draw.pick(&["outer-race", "inner-race", "balls"]),
             draw.pick(&["cylindrical", "spherical"]),
         );
+        if guidance != "balls" {
+            text += &format!("race_clearance = \"{} mm\"\n", ball * clearance);
+        }
     }
     // N: C0 = 12.3 Z D² with D in mm, as catalogues have it.
     let rating = 12.3 * balls as f64 * 4.0 * ball * ball;
