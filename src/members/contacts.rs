@@ -3,13 +3,6 @@
 //! Two kernels call the same scalar laws: [`Kernel::Scalar`] contact by contact, [`Kernel::Simd`] over blocks of
 //! [`LANES`] contacts. The order of operations within a contact is the same, so the bits are too.
 
-use crate::members::state::LANES;
-use crate::members::state::Layout;
-use crate::members::state::POSITION;
-use crate::members::state::VELOCITY;
-use crate::members::steps::BearingSteps;
-use crate::plan::Stage;
-use crate::plan::counts::Counts;
 use crate::ch2_housing::bearing::contact::{
     RaceContact, RaceLaw, damped_load, normal_load, race_contact,
 };
@@ -23,6 +16,10 @@ use crate::members::contact_traction::{traction_lanes, traction_plain};
 use crate::members::raceway_profile;
 use crate::members::raceway_profile::{ProfiledPair, RacewayProfiles};
 use crate::members::rigid_body::BodyKinematics;
+use crate::members::state::{LANES, Layout, POSITION, VELOCITY};
+use crate::members::steps::BearingSteps;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use serde::{Deserialize, Serialize};
 
 /// Laws that all contacts share.

@@ -3,7 +3,6 @@
 //! The bodies prescribe the displacements of the sleeve nodes and have their mass. Forces of the elements on these
 //! nodes are summed over a coupling step and applied to the bodies, as those of a housing fit.
 
-use crate::plan::counts::Counts;
 use crate::assembly::lists::Assembly;
 use crate::kinematics::vec3::{Vec3, add, add_scaled, cross, scale, sub};
 use crate::members::connection::{Connection, Law};
@@ -12,6 +11,7 @@ use crate::members::state::BodyState;
 use crate::motion::race_in_bore::{in_free_motion, mean_over, work_on_way};
 use crate::motion::simulation::Simulation;
 use crate::numeric::profile::Profile;
+use crate::plan::counts::Counts;
 use crate::solids::error::SolidError;
 use crate::solids::explicit::ExplicitSolid;
 use crate::solids::model::Prescribed;

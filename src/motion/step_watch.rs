@@ -5,7 +5,6 @@
 //! contact stiffness is compared every few steps, at little cost, and the Jacobian is evaluated when the limit may have
 //! come down to the step. A prescribed step is refused then; one that follows from the limit is shortened.
 
-use crate::plan::Stage;
 use crate::ch2_housing::bearing::cage::CageContact;
 use crate::ch2_housing::bearing::contact::{normal_load, normal_stiffness};
 use crate::ch2_housing::bearing::traction::{TractionLaw, coefficient_and_slope};
@@ -14,6 +13,7 @@ use crate::members::bearing::Bearing;
 use crate::motion::simulation::{Integrator, Simulation, SimulationError, Stepping};
 use crate::motion::stability::step_limit;
 use crate::motion::system::System;
+use crate::plan::Stage;
 use serde::{Deserialize, Serialize};
 
 /// Steps between two checks of the contacts.

@@ -4,14 +4,14 @@
 //! needs the outward displacement of node i under an outward force on node j: a dense compliance, one solve of the
 //! sparse stiffness for each node.
 
-use crate::plan::Stage;
-use crate::plan::counts::Counts;
 use crate::ch2_housing::bore_contact::{ContactNode, Frame};
 use crate::kinematics::Pose;
 use crate::kinematics::euler::{angles, quaternion};
 use crate::kinematics::vec3::{Vec3, add, dot, scale};
 use crate::numeric::dense::DenseSymmetric;
 use crate::numeric::sparse::{Factor, Memory};
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::solids::error::{SolidError, at_rest};
 use crate::solids::memory::condensed;
 use crate::solids::model::SolidModel;

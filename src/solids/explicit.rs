@@ -1,7 +1,6 @@
 //! Explicit steps of a solid (2.7): central differences, or Runge–Kutta as in the source; for rubber, whose stresses
 //! depend on history ([`crate::solids::rubber::explicit`]), central differences.
 
-use crate::solids::plan::SolidSteps;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::clock::whole_steps;
 use crate::plan::Stage;
@@ -9,6 +8,7 @@ use crate::plan::counts::Counts;
 use crate::solids::energy::{SolidEnergy, SolidLedger, strain_energy};
 use crate::solids::error::SolidError;
 use crate::solids::model::{Prescribed, SolidModel};
+use crate::solids::plan::SolidSteps;
 use crate::solids::rigid_motion::rigid_motion;
 use crate::solids::rubber::tet_forces::{History, RubberForces};
 use crate::solids::runge_kutta::Stages;

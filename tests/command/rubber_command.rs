@@ -436,7 +436,7 @@ fn check_and_plan_say_what_rubber_it_is() {
     // A quarter of π/4 (36² − 20²) mm² × 20 mm.
     let echo = succeed(command("check", &scene, &["--json"]));
     let echo: serde_json::Value = serde_json::from_str(&echo).unwrap();
-    assert_eq!(echo["solid"]["material"]["law"], "elastomer");
+    assert_eq!(echo["scene"]["solid"]["material"]["law"], "elastomer");
     let volume = echo["mesh"]["volume"]["value"].as_f64().unwrap();
     let exact = 0.25 * 0.25 * std::f64::consts::PI * (0.036f64.powi(2) - 0.02f64.powi(2)) * 0.02;
     // Ten-node elements follow the sleeves to the fourth order of 22.5 degrees, their four points to the second.

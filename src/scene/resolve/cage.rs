@@ -6,7 +6,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::mesh;
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::{Problem, SceneError, mm};
 use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::dynamics::{check_inertia, millimetres};
 use crate::scene::resolve::resolved::{Cage, CageInRun, CageMethod, Dimensions, FlexibleCage};
@@ -38,7 +38,11 @@ pub(crate) fn cage(
     if let Some(pocket) = cage.pocket_radius
         && pocket < geometry.ball_radius
     {
-        let problem = Problem::BallExceedsPocket { pocket, ball: geometry.ball_radius };
+        let (pocket, ball) = (mm(pocket), mm(geometry.ball_radius));
+        let problem = Problem::Contradiction(format!(
+            "the pocket radius {pocket} is smaller than the ball radius {ball}. Allowed: at least {ball}. Hint: a ball must fit \
+             its pocket"
+        ));
         return Err(reader.document.error("bearing.cage.pocket_radius", problem));
     }
     if let Some(pocket) = cage.pocket_radius {
@@ -47,27 +51,18 @@ pub(crate) fn cage(
         let room =
             pitch.unwrap_or(geometry.pitch_radius) * libm::sin(PI / geometry.ball_count as f64);
         if pocket >= room {
-            let problem = Problem::WrongOrder {
-                value: pocket,
-                relation: "less than",
-                other_name: "half the distance between centres of pockets",
-                other: room,
-                advice: "pockets would run into each other, with no bar between them; check radius, not diameter, and the \
-                         number of balls",
-            };
+            let other = ("half the distance between centres of pockets", room);
+            let hint = "pockets would run into each other, with no bar between them; check radius, not diameter, and the number \
+                        of balls";
+            let problem = Problem::order(pocket, "less than", other, hint);
             return Err(reader.document.error("bearing.cage.pocket_radius", problem));
         }
     }
     if let (Some(inner), Some(outer)) = (cage.inner_radius, cage.outer_radius)
         && inner >= outer
     {
-        let problem = Problem::WrongOrder {
-            value: inner,
-            relation: "less than",
-            other_name: "the cage's outer radius",
-            other: outer,
-            advice: "are the two exchanged?",
-        };
+        let other = ("the cage's outer radius", outer);
+        let problem = Problem::order(inner, "less than", other, "are the two exchanged?");
         return Err(reader.document.error("bearing.cage.inner_radius", problem));
     }
     check_between_races(reader, &cage, geometry.pitch_radius, sizes)?;
@@ -115,8 +110,7 @@ fn check_between_races(
         let overlaps = |value: f64, other: f64| (other - value) * outward <= 0.0;
         if overlaps(radius, other) {
             let advice = "a cage is between the races; check radius, not diameter, and unit";
-            let problem =
-                Problem::WrongOrder { value: radius, relation, other_name, other, advice };
+            let problem = Problem::order(radius, relation, (other_name, other), advice);
             return Err(reader.document.error(key, problem));
         }
         // Radius of the guiding surface of the race.
@@ -124,14 +118,7 @@ fn check_between_races(
         if cage.guidance == Some(guide) && overlaps(land, bottom) {
             let advice = "this is the sum of the cage's radius and race_clearance, at which the race \
                           guides it; a race ends at its groove";
-            let value = land;
-            let problem = Problem::WrongOrder {
-                value,
-                relation,
-                other_name: of_bottom,
-                other: bottom,
-                advice,
-            };
+            let problem = Problem::order(land, relation, (of_bottom, bottom), advice);
             return Err(reader.document.error("bearing.cage.race_clearance", problem));
         }
     }
@@ -173,7 +160,7 @@ pub(crate) fn in_run(
         let reason = format!("the scene gives no {} of the cage", missing.join(", "));
         return Ok(CageInRun::LeftOut(reason));
     };
-    let density = reader.number("bearing.cage.density").unwrap_or(7850.0);
+    let density = reader.number("bearing.cage.density");
     let length = match reader.given_number("bearing.cage.length") {
         Some(length) => length,
         None => {
@@ -195,7 +182,7 @@ pub(crate) fn in_run(
         [full.axial / full.mass * mass, full.transverse / full.mass * mass]
     });
     let pocket = match reader.choice("bearing.cage.pocket") {
-        Some("spherical") => Pocket::Spherical,
+        "spherical" => Pocket::Spherical,
         _ => Pocket::Cylindrical,
     };
     let contacts = CageContacts {
@@ -217,8 +204,8 @@ pub(crate) fn in_run(
             reader.note("bearing.cage.contact.stiffness", "2e8 N/m", reason);
             CageForce::Penalty { stiffness: 2e8 }
         }),
-        friction: reader.number("bearing.cage.friction").unwrap_or(0.1),
-        regularisation_speed: reader.number("bearing.cage.regularisation_speed").unwrap_or(0.01),
+        friction: reader.number("bearing.cage.friction"),
+        regularisation_speed: reader.number("bearing.cage.regularisation_speed"),
     };
     Ok(CageInRun::Body(CageBody { inertia: Inertia { mass, axial, transverse }, contacts }))
 }
@@ -244,26 +231,31 @@ pub(crate) fn flexible(
     let by_nodes = flexible || at == Some("nodes");
     if !by_nodes {
         if per_area.is_some() {
-            let reason = "a stiffness per area is for a cage that touches by its nodes";
-            let advice = "write `at = \"nodes\"` in [bearing.cage.contact], or a stiffness in N/m";
-            return Err(reader.document.refused(path, reason, advice));
+            let reason = "a stiffness per area is for a cage that touches by its nodes. Hint: write `at = \"nodes\"` in [bearing.cage.contact], or a stiffness in N/m";
+            return Err(reader.document.refused(path, reason));
         }
         return Ok(None);
     }
-    let refuse = |key: &str, reason: &str, advice: &str| {
-        Err(reader.document.refused(&format!("bearing.cage.{key}"), reason, advice))
+    let refuse = |key: &str, reason: &str| {
+        Err(reader.document.refused(&format!("bearing.cage.{key}"), reason))
     };
     if flexible && at == Some("surfaces") {
-        let advice = "leave it out, or write `body = \"rigid\"`";
-        return refuse("contact.at", "a flexible cage touches by the nodes of its mesh", advice);
+        return refuse(
+            "contact.at",
+            "a flexible cage touches by the nodes of its mesh. Hint: leave it out, or write `body = \"rigid\"`",
+        );
     }
     if reader.choice_if_given("bearing.cage.contact.law") == Some("hertz") {
-        let advice = "write `law = \"penalty\"`, or leave it out";
-        return refuse("contact.law", "nodes touch by the penalty of (5.8)", advice);
+        return refuse(
+            "contact.law",
+            "nodes touch by the penalty of (5.8). Hint: write `law = \"penalty\"`, or leave it out",
+        );
     }
     if reader.choice_if_given("bearing.cage.pocket") == Some("spherical") {
-        let advice = "leave it out: the mesh has round pockets with radial axes";
-        return refuse("pocket", "the mesh of a cage has cylindrical pockets", advice);
+        return refuse(
+            "pocket",
+            "the mesh of a cage has cylindrical pockets. Hint: leave it out: the mesh has round pockets with radial axes",
+        );
     }
     let CageInRun::Body(CageBody { contacts, inertia }) = cage else { return Ok(None) };
     let shape = mesh::generate::Cage {
@@ -377,13 +369,15 @@ fn force(reader: &mut Reader) -> Result<Option<CageForce>, SceneError> {
         // A stiffness per area is for nodes, see `flexible`.
         (Some(Checked::Either(2, _)), false) => Ok(None),
         (Some(_), _) => {
-            let (reason, example) = if hertz {
-                ("`hertz` takes a stiffness in N/m^1.5", "1e10 N/m^1.5")
-            } else {
-                ("`penalty` takes a stiffness in N/m", "2e8 N/m")
+            let reason = match hertz {
+                true => {
+                    "`hertz` takes a stiffness in N/m^1.5. Hint: write stiffness = \"1e10 N/m^1.5\", or choose the other law"
+                }
+                false => {
+                    "`penalty` takes a stiffness in N/m. Hint: write stiffness = \"2e8 N/m\", or choose the other law"
+                }
             };
-            let advice = format!("write stiffness = \"{example}\", or choose the other law");
-            Err(reader.document.refused(path, reason, advice))
+            Err(reader.document.refused(path, reason))
         }
     }
 }
@@ -405,6 +399,6 @@ fn pocket_pitch(reader: &Reader, geometry: &BearingGeometry) -> Result<Option<f6
         ("less than", "the pitch radius plus a ball radius", high)
     };
     let advice = "leave it out; the pockets are then on the pitch circle";
-    let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
+    let problem = Problem::order(value, relation, (other_name, other), advice);
     Err(reader.document.error(path, problem))
 }

@@ -1,12 +1,12 @@
 //! One step of a solid of rubber: its equilibrium, its error, and its commit.
 
-use crate::plan::Stage;
 use crate::ch2_housing::elastomer::maxwell::{
     beyond_small_strain, commit, curvature_error, relaxed_history, summed,
 };
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::{Sym3, double_dot, green_lagrange};
 use crate::kinematics::vec3::dot;
+use crate::plan::Stage;
 use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::model::corners;
 use crate::solids::rubber::model::Moment;

@@ -1,11 +1,11 @@
 //! Newton's method for the equilibrium of a solid of rubber at the end of a step.
 
-use crate::plan::Stage;
-use crate::plan::counts::Counts;
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::Sym3;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::sparse::FactorError;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::newton::{Convergence, Unbalanced, add_solution, converge};
 use crate::solids::rubber::model::{Moment, RubberModel};

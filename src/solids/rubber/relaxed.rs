@@ -1,9 +1,9 @@
 //! The relaxed equilibrium of a solid of rubber, long after all loads.
 
-use crate::plan::Stage;
-use crate::plan::counts::Counts;
 use crate::kinematics::vec3::Vec3;
 use crate::numeric::profile::Profile;
+use crate::plan::Stage;
+use crate::plan::counts::Counts;
 use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::rubber::checkpoint::RubberState;
 use crate::solids::rubber::measures::network_energy;

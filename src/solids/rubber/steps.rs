@@ -4,11 +4,11 @@
 //! stresses, and with that the length of the next step. Steps end at the corners of loads and prescribed displacements;
 //! behind a corner there is no second difference, so that a pair of steps is taken and judged together.
 
-use crate::plan::counts::Counts;
 use crate::ch2_housing::elastomer::maxwell::{DashpotFactors, StepFactors};
 use crate::elements::tet10::POINTS;
 use crate::kinematics::strain::Sym3;
 use crate::kinematics::vec3::Vec3;
+use crate::plan::counts::Counts;
 use crate::solids::error::{SolidError, StepFailure};
 use crate::solids::newton::Convergence;
 use crate::solids::rubber::checkpoint::{RubberCheckpoint, RubberState};

@@ -1,8 +1,8 @@
 //! Small vibrations of a bushing over frequency: its dynamic stiffness and damping (3.13)–(3.14).
 
+use crate::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
 use crate::plan::Stage;
 use crate::plan::counts::Counts;
-use crate::ch3_bushing::hysteresis::{Hysteresis, of_complex_stiffness};
 use crate::solids::error::SolidError;
 use crate::solids::rubber::harmonic::{ComplexStiffness, complex_stiffness};
 use crate::solids::rubber::model::RubberModel;
