@@ -242,11 +242,7 @@ fn what_does_not_fit_rubber_is_refused() {
             with("youngs_modulus = \"1 GPa\""),
             &["solid.material.youngs_modulus", "\"linear-elastic\""],
         ),
-        (
-            "check",
-            (law, String::new()),
-            &["solid.material.table", "law \"elastomer\"", "[solid.material]"],
-        ),
+        ("check", (law, String::new()), &["solid.material.table", "law = \"elastomer\""]),
         (
             "check",
             (table, String::new()),
@@ -303,18 +299,18 @@ fn what_does_not_fit_rubber_is_refused() {
             behind("[[solid.material.maxwell]]\ngamma = 1\nrelaxation_time = \"0 s\""),
             &["relaxation_time", "Allowed"],
         ),
-        ("check", behind("[solid]\ndamping = \"77 1/s\""), &["solid.damping", "Maxwell elements"]),
-        ("check", behind("[solid]\nspin = \"77 rpm\""), &["solid.spin", "without inertia"]),
-        ("check", behind("[modes]\ncount = 3"), &["modes", "without inertia"]),
+        ("check", behind("[solid]\ndamping = \"77 1/s\""), &["solid.damping", "linear-elastic"]),
+        ("check", behind("[solid]\nspin = \"77 rpm\""), &["solid.spin", "linear-elastic"]),
+        ("check", behind("[modes]\ncount = 3"), &["modes", "linear-elastic"]),
         (
             "check",
             behind("[numerics]\nend = \"1 ms\"\nmethod = \"runge-kutta\""),
-            &["numerics.method", "without inertia"],
+            &["numerics.method", "linear-elastic"],
         ),
         (
             "check",
             behind("[numerics]\nend = \"1 ms\"\nstep_fraction = 0.5"),
-            &["numerics.step_fraction", "without inertia"],
+            &["numerics.step_fraction", "linear-elastic"],
         ),
         (
             "check",

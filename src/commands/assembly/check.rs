@@ -77,7 +77,7 @@ pub fn run(
         put("mesh", &housing.name, mesh_section(&housing.built)?);
     }
     if let Some(run) = scene.run() {
-        found["inertia"] = inertia(Lists::made(scene, made).assembly()?)?;
+        found["body_inertia"] = inertia(Lists::made(scene, made).assembly()?)?;
         if scene.housing_method() != Some(HousingMethod::QuasiStatic) {
             found["numerics"] = numerics(run)?;
         }

@@ -390,7 +390,7 @@ impl<'s> Prepared<'s> {
                     SolutionMethod::Reduced(shapes) => shapes.ran.clone(),
                     SolutionMethod::Rigid | SolutionMethod::Explicit => Vec::new(),
                 };
-                record.sections.push(("inertia".into(), inertia(assembly)?));
+                record.sections.push(("body_inertia".into(), inertia(assembly)?));
                 Ok(record)
             }
             Prepared::Solid { scene, mesh, .. } => {

@@ -448,9 +448,14 @@ fn body(
         // It follows from the beam.
         NO_INERTIA
     } else if needs_mass || parts.iter().any(|key| reader.is_given(key)) {
-        let because = format!(" of body.{name}, for a run and with gravity");
+        let missing = |path: &String| {
+            let (_, key) = keys::find(path).ok_or_else(|| reader.missing(path, ""))?;
+            let because = format!(" of body.{name}, for a run and with gravity");
+            let example = format!("`inertia.{} = {}` to [body.{name}]", key.name(), key.example());
+            Err(scoped.error(key.path, Problem::Missing { because, example }))
+        };
         let [mass, axial, transverse] =
-            parts.each_ref().map(|key| reader.required_number(key, &because));
+            parts.each_ref().map(|k| reader.given_number(k).map_or_else(|| missing(k), Ok));
         let inertia = Inertia { mass: mass?, axial: axial?, transverse: transverse? };
         check_inertia(inertia.axial, inertia.transverse)
             .map_err(|problem| reader.document.error(&parts[1], problem))?;
