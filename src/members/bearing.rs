@@ -45,7 +45,7 @@ pub struct Bearing {
 /// A cage and its contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Caged {
-    /// Index in [`Assembly::bodies`].
+    /// Index in [`Assembly::bodies`](crate::assembly::lists::Assembly::bodies).
     pub body: usize,
     pub contacts: CageContacts,
     /// Contact by nodes of its mesh, instead of by the surfaces of `contacts`.

@@ -8,7 +8,7 @@ use crate::members::rigid_body::{BodyKinematics, Wrench, kinematics_at_mount};
 /// One section, as last placed.
 #[derive(Clone, Debug)]
 pub struct SectionAttachment {
-    /// Index in [`Assembly::shafts`].
+    /// Index in [`Assembly::shafts`](crate::assembly::lists::Assembly::shafts).
     pub shaft: usize,
     pub section: Section,
     pub now: SectionNow,

@@ -1,4 +1,4 @@
-//! A shaft that springs hardly hold, from the rows that are written.
+//! A shaft on very soft springs: its motion from the rows that are written.
 
 use crate::command_line_common::{done, read, text, write};
 use std::f64::consts::PI;

@@ -33,19 +33,21 @@ fn assert_whirl(found: &[[f64; 3]], expected: &mut [[f64; 2]], tolerance: f64) {
 fn coupled_planes_whirl_as_their_matrices_have_it() {
     let mass = 10.0;
     let (stiffness, damping) = ([[4e6, 1e6], [-5e5, 6e6]], [[300.0, 900.0], [-200.0, 500.0]]);
-    let list = |of: [[f64; 2]; 2], unit: &str| {
-        let [[y, yz], [zy, z]] = of;
-        format!(
-            "{{ y = \"{y} {unit}\", z = \"{z} {unit}\", yz = \"{yz} {unit}\", zy = \"{zy} {unit}\" }}"
-        )
+    let rotor = |stiffness: [[f64; 2]; 2], damping: [[f64; 2]; 2]| {
+        let list = |[[y, yz], [zy, z]]: [[f64; 2]; 2], unit: &str| {
+            format!(
+                "{{ y = \"{y} {unit}\", z = \"{z} {unit}\", yz = \"{yz} {unit}\", zy = \"{zy} {unit}\" }}"
+            )
+        };
+        whirl(&format!(
+            "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\ntilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n\
+             speed = \"1000 rpm\"\ninertia = {{ mass = \"{mass} kg\", axial = \"0.1 kg m^2\", transverse = \"0.1 kg m^2\" }}\n\
+             [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\nstiffness = {}\ndamping = {}\n",
+            list(stiffness, "N/m"),
+            list(damping, "N s/m"),
+        ))
     };
-    let found = whirl(&format!(
-        "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\ntilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n\
-         speed = \"1000 rpm\"\ninertia = {{ mass = \"{mass} kg\", axial = \"0.1 kg m^2\", transverse = \"0.1 kg m^2\" }}\n\
-         [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\nstiffness = {}\ndamping = {}\n",
-        list(stiffness, "N/m"),
-        list(damping, "N s/m"),
-    ));
+    let found = rotor(stiffness, damping);
     let mut rates = Matrix4::zeros();
     for i in 0..2 {
         rates[(i, i + 2)] = 1.0;
@@ -59,17 +61,12 @@ fn coupled_planes_whirl_as_their_matrices_have_it() {
     let mut expected: Vec<_> =
         upper.map(|value| [value.im / TAU, -value.re / value.norm()]).collect();
     assert_whirl(&found, &mut expected, 1e-9);
-    // ż² falls behind y: with y = cos, z = sin turns from Y towards Z, and k_yz > 0 > k_zy feeds the turn the other way.
-    let skew = |yz: &str, zy: &str| {
-        let modes = whirl(&format!(
-            "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\ntilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n\
-             speed = \"1000 rpm\"\ninertia = {{ mass = \"10 kg\", axial = \"0.1 kg m^2\", transverse = \"0.1 kg m^2\" }}\n\
-             [spring.mount]\nfrom = \"ground\"\nto = \"rotor\"\n\
-             stiffness = {{ y = \"4e6 N/m\", z = \"4e6 N/m\", yz = \"{yz} N/m\", zy = \"{zy} N/m\" }}\n"
-        ));
+    // F_y = −K_yz z and F_z = −K_zy y push along a turn from Y towards Z where K_yz > 0 > K_zy: forward whirl grows.
+    let growing = |yz: f64| {
+        let modes = rotor([[4e6, yz], [-yz, 4e6]], [[0.0; 2]; 2]);
         modes.into_iter().find(|mode| mode[1] < 0.0).unwrap()[2]
     };
-    assert!(skew("1e5", "-1e5") > 0.9 && skew("-1e5", "1e5") < -0.9);
+    assert!(growing(1e5) > 0.9 && growing(-1e5) < -0.9);
 }
 
 /// Each coordinate of a foundation vibrates with its own spring and dashpot.
@@ -158,6 +155,9 @@ fn a_bent_shaft_shortens_towards_its_centre_of_mass() {
     assert!((found / expected - 1.0).abs() <= 5e-3, "{found} {expected}");
 }
 
+/// Pixel of the axis of the speed.
+const AXIS: f64 = 500.0;
+
 /// Over a run-up the amplitude along Z is that of Z, along Y that of Y.
 #[test]
 fn amplitudes_of_a_run_up_are_drawn_axis_by_axis() {
@@ -183,11 +183,10 @@ fn amplitudes_of_a_run_up_are_drawn_axis_by_axis() {
             .collect()
     };
     let lines: Vec<Vec<f64>> = picture.split("<polyline").skip(1).map(heights).collect();
-    let floor = lines.iter().flatten().fold(0.0, |most: f64, y| most.max(*y).min(500.0));
     let curves: Vec<f64> = lines
         .iter()
         .filter(|line| line.len() > 10)
-        .map(|line| floor - line.iter().copied().fold(f64::INFINITY, f64::min))
+        .map(|line| AXIS - line.iter().copied().fold(f64::INFINITY, f64::min))
         .collect();
     let rows = read(&out.join("series.csv"));
     let mut rows = rows.lines().map(|row| row.split(',').collect::<Vec<_>>());

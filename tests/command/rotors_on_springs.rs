@@ -55,3 +55,13 @@ fn scenes_without_bearings_refuse_keys_of_bearings_and_circulatory_equilibria() 
     let said = done(&["statics", &path, "--dry", "--set", "body.rotor.z.load=-100 N"]);
     assert!(said.contains("-100.000000 N"), "{said}");
 }
+
+#[test]
+fn a_run_without_bearings_is_checked() {
+    let path = scene("rotor_on_springs.toml");
+    let run = ["--set", "numerics.end=1 ms", "--set", "numerics.step=10 us"];
+    for more in [&run[..], &run[..2]] {
+        let said = done(&[&["check", &path], more].concat());
+        assert!(said.contains("a valid scene"), "{said}");
+    }
+}

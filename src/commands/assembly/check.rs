@@ -49,7 +49,10 @@ pub fn run(
         }
         made = Some(assembly);
         let run = RunSettings { options: request.options, ..settings };
-        scene.bearings[0].scene.dynamics.run = Some(run);
+        let common = scene.bearings.first_mut().map(|placed| &mut placed.scene);
+        if let Some(common) = common.or(scene.plain.as_deref_mut()) {
+            common.dynamics.run = Some(run);
+        }
     }
     let scene = &scene;
     let (common, defaults) = (scene.common(), defaults(scene));
