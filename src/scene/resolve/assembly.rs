@@ -274,7 +274,7 @@ fn bearing(
     }
     if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
         for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
-            used.key = scoped.shown(&used.key, true);
+            used.name(&scoped);
         }
     }
     if let Some(body) = on[1] {
@@ -373,7 +373,7 @@ fn name_defaults(
     };
     for list in [&mut scene.defaults_used, &mut scene.dynamics.defaults_used] {
         for used in list.iter_mut().filter(|used| of_bearing(&used.key)) {
-            used.key = scoped.shown(&used.key, true);
+            used.name(scoped);
         }
         list.retain(|used| !shared.contains(used));
         shared.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());

@@ -299,8 +299,7 @@ fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneErr
         // With all radii the clearance follows.
         (false, ..) => return Ok(ClearanceThrough::Ball),
     };
-    reader.note(THROUGH, word, reason);
-    Ok(through_of(word))
+    Ok(through_of(reader.choice_or(THROUGH, word, reason)))
 }
 
 fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
@@ -312,8 +311,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     };
     let clearance = given_clearance(reader).unwrap_or_else(|| {
         let reason = "the parts just touch at the contact angle";
-        reader.note("bearing.clearance.radial", "0 um", reason);
-        0.0
+        reader.number_or("bearing.clearance.radial", 0.0, "0 um", reason)
     });
     let through = if clearance == 0.0 && !reader.is_given(THROUGH) {
         ClearanceThrough::Ball

@@ -65,6 +65,11 @@ impl<'d> ItemRef<'d> {
         format!("{}.{name}", self.list)
     }
 
+    /// Path of a key of this table, with its number.
+    pub fn own_path(&self, name: &str) -> String {
+        format!("{}.{}.{name}", self.list, self.number)
+    }
+
     /// The error of a missing key, with an example of the key table.
     pub fn missing(&self, name: &str, because: &str) -> SceneError {
         let example = keys::find(&self.path(name))
