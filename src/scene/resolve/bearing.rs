@@ -248,6 +248,11 @@ impl<'d> Reader<'d> {
         &mut self.defaults_used[last]
     }
 
+    /// Records the value of a key that is not reported as a default.
+    pub fn follow(&mut self, path: &str, value: impl Into<Checked>) {
+        self.note(path, "", "").fill(path, value);
+    }
+
     pub fn missing(&self, path: &str, because: &str) -> SceneError {
         let example = keys::find(path).map(|(_, key)| {
             let table = self.document.shown(key.table(), self.document.is_named(path));

@@ -285,6 +285,12 @@ pub(crate) fn flexible(
     let [inner, outer] = contacts.ring;
     let volume = PI * (outer * outer - inner * inner) * contacts.length - pockets;
     let order = count(reader, "order", 2);
+    let counts =
+        [("quarter", cells.quarter), ("bar", cells.bar), ("wall", cells.wall), ("order", order)];
+    for (key, count) in counts {
+        reader.follow(&format!("bearing.cage.mesh.{key}"), count as f64);
+    }
+    reader.follow("bearing.cage.contact.at", "nodes");
     let mut given = |key: &str, usual: f64, shown: &str, reason: &str| {
         let path = format!("bearing.cage.{key}");
         reader.given_number(&path).unwrap_or_else(|| {
@@ -303,6 +309,9 @@ pub(crate) fn flexible(
         Some(Checked::Boolean(given)) => *given,
         _ => true,
     };
+    if reduced {
+        reader.follow("bearing.cage.corrections", corrections);
+    }
     let penalty = match (per_area, contacts.force) {
         (Some(stiffness), _) => Penalty::PerArea(stiffness),
         (None, CageForce::Penalty { stiffness } | CageForce::Hertz { stiffness }) => {

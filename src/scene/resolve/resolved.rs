@@ -30,6 +30,11 @@ pub struct DefaultUsed {
 }
 
 impl DefaultUsed {
+    /// False for a value that follows from the keys next to it, such as a second position.
+    pub fn is_reported(&self) -> bool {
+        !self.reason.is_empty()
+    }
+
     /// Adds a key that would give the same.
     pub(crate) fn fill(&mut self, key: &str, value: impl Into<Checked>) -> &mut DefaultUsed {
         self.fills.push((key.to_string(), value.into()));
@@ -48,8 +53,6 @@ impl DefaultUsed {
 pub struct RaceDimensions {
     /// Groove-bottom radius from the axis, after the clearance has been applied.
     pub radius: f64,
-    /// The groove-bottom radius as given, if it was.
-    pub nominal_radius: Option<f64>,
     pub groove_radius: f64,
     /// Groove radius / nominal ball diameter.
     pub conformity: f64,

@@ -138,8 +138,15 @@ pub(crate) fn rubber(
         let (gamma, tau) = (item.required("gamma")?, item.required("relaxation_time")?);
         maxwell.push(Maxwell { gamma, tau });
     }
+    reader.follow(&path("rubber_modulus"), modulus);
+    reader.follow(&path("chain"), locking);
+    reader.follow(&path("bulk_ratio"), ratio.unwrap_or(BULK_RATIO));
     if let Some(base) = base.filter(|_| maxwell.is_empty()) {
         maxwell = base.maxwell;
+        for (element, number) in maxwell.iter().zip(1..) {
+            reader.follow(&format!("{list}.{number}.gamma"), element.gamma);
+            reader.follow(&format!("{list}.{number}.relaxation_time"), element.tau);
+        }
         if table == Some("2.3") {
             let value = "those of Table 3.1";
             let reason = "Table 2.3 prints none; the source says that they were adjusted";

@@ -69,6 +69,18 @@ impl From<f64> for Checked {
     }
 }
 
+impl From<String> for Checked {
+    fn from(text: String) -> Checked {
+        Checked::Text(text)
+    }
+}
+
+impl From<bool> for Checked {
+    fn from(value: bool) -> Checked {
+        Checked::Boolean(value)
+    }
+}
+
 impl From<&'static str> for Checked {
     fn from(word: &'static str) -> Checked {
         Checked::Choice(word)

@@ -5,7 +5,7 @@ use crate::numeric::profile::Profile;
 use crate::scene::resolve::resolved::DefaultUsed;
 use crate::scene::resolve::unused::unused;
 use crate::scene::tables::keys;
-use crate::scene::tables::keys::{DEFAULT_SETS, KEYS, Kind, Leads, NAMED, Need, SI, UNITS};
+use crate::scene::tables::keys::{DEFAULT_SETS, KEYS, Key, Kind, Leads, NAMED, Need, SI, UNITS};
 use crate::scene::text::base::{BASE, WITHOUT};
 use crate::scene::text::document::{Document, Named};
 use crate::scene::text::sweep::SweepValues;
@@ -73,8 +73,13 @@ impl Document {
         let Leads { key, name, item: number, .. } = leads;
         let content = Content::Value(value.clone());
         let item = Item { content, offset: None, named: name.is_some() };
-        if number.is_some() {
-            self.put_item(&leads, item);
+        if let Some(number) = number {
+            let list = self.entry(name, key.table()).map_or(&[][..], Item::list);
+            let of = list.get(number - 1).and_then(Item::table);
+            let is_given = |key: &Key| of.is_some_and(|table| table.own(key.name()).is_some());
+            if !is_given(key) && !key.rivals().any(is_given) {
+                self.put_item(&leads, item);
+            }
             return;
         }
         let is_given = |path: &str| self.entry(name, path).is_some();
