@@ -72,7 +72,7 @@ pub fn print_lines(
         line("base", name);
     }
     lines(&mut line);
-    for used in defaults {
+    for used in echo::reported(defaults) {
         line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
     }
     for assumption in assumptions {

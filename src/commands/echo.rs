@@ -86,13 +86,18 @@ pub fn defaults(scene: &Scene) -> Vec<DefaultUsed> {
     all
 }
 
+/// Defaults for people.
+pub fn reported(defaults: &[DefaultUsed]) -> impl Iterator<Item = &DefaultUsed> {
+    defaults.iter().filter(|used| used.is_reported())
+}
+
 pub fn notes(assumptions: &[Assumption], defaults: &[DefaultUsed]) -> [(&'static str, Value); 2] {
     let assumption = |a: &Assumption| json!({ "name": a.name, "text": a.text });
     let default =
         |used: &DefaultUsed| json!({ "key": used.key, "value": used.value, "reason": used.reason });
     [
         ("assumptions", assumptions.iter().map(assumption).collect()),
-        ("defaults", defaults.iter().map(default).collect()),
+        ("defaults", reported(defaults).map(default).collect()),
     ]
 }
 

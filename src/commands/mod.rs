@@ -180,7 +180,7 @@ pub fn record(
         scene: document.written_out(defaults),
         plan,
         ran: StageCounts::default(),
-        assumptions: assumptions.chain(defaults.iter().map(default)).collect(),
+        assumptions: assumptions.chain(echo::reported(defaults).map(default)).collect(),
         threads: 1,
         seconds,
         sections: Vec::new(),

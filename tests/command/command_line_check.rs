@@ -190,9 +190,8 @@ fn what_check_prints_is_a_scene() {
 fn numerics_output_assumptions_and_defaults_are_echoed() {
     let root = tempdir().unwrap();
     let text = |name| std::fs::read_to_string(scene(name)).unwrap();
-    // Numbers are those of the scene's text.
     let echoed = echo(root.path(), &text("settling_by_accuracy.toml"));
-    assert_eq!(echoed["scene"]["numerics"]["end"], "0.2 s");
+    assert_eq!(echoed["scene"]["numerics"]["end"], 0.2);
     assert_eq!(echoed["numerics"]["integrator"], "dormand-prince");
     assert_eq!(number(&echoed, "/numerics/accuracy", "1"), 1e-4);
     let echoed = echo(root.path(), &text("settling.toml"));

@@ -34,7 +34,7 @@ fn where_a_mesh_is_put_is_told() {
         serde_json::from_str(&succeed(command("check", &scene, &["--json"]))).unwrap();
     let mesh = &echo["scene"]["solid"]["mesh"];
     assert_eq!(mesh["axis"], "z");
-    assert_eq!(mesh["origin"][0], "40 mm");
+    assert_eq!(mesh["origin"][0], 0.04);
     // And where it is not put.
     let message = refused(&place, &with_mesh(&place, &elsewhere(), 1, ""));
     for words in [

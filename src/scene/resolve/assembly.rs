@@ -223,18 +223,25 @@ fn bearing(
         Some(name) => document.scoped(name),
         None => document.common(),
     };
-    let (carriers, reversed) = {
+    let (carriers, reversed, places) = {
         let mut reader = Reader::new(&scoped);
         let inner = carrier(&reader, 0, "bearing.inner_on", bodies)?;
         let outer = carrier(&reader, 1, "bearing.outer_on", bodies)?;
-        let at = reader.number("bearing.inner_at");
+        let at = reader.given_number("bearing.inner_at").unwrap_or(0.0);
         let outer_at = reader.given_number("bearing.outer_at").unwrap_or(at);
         let reversed = matches!(scoped.value("bearing.reversed"), Some(Checked::Boolean(true)));
+        for (side, (name, body, at)) in [("inner", inner, at), ("outer", outer, outer_at)].into_iter().enumerate() {
+            let on = body.map_or(OWN_RACES[side], |body| bodies[body]);
+            reader.follow(&format!("bearing.{name}_on"), on.to_string());
+            reader.follow(&format!("bearing.{name}_at"), at);
+        }
+        reader.follow("bearing.reversed", reversed);
         let placed = |body: Option<usize>, at| match body {
             Some(index) => Carrier::Body { index, at },
             None => Carrier::Own { at },
         };
-        (([placed(inner, at), placed(outer, outer_at)], [inner, outer]), reversed)
+        let carriers = ([placed(inner, at), placed(outer, outer_at)], [inner, outer]);
+        (carriers, reversed, reader.into_defaults_used())
     };
     let (carriers, on) = carriers;
     if on[0].is_some() && on[0] == on[1] {
@@ -274,7 +281,7 @@ fn bearing(
     }
     if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
         for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
-            used.key = scoped.shown(&used.key, true);
+            used.name(&scoped);
         }
     }
     if let Some(body) = on[1] {
@@ -284,6 +291,7 @@ fn bearing(
     for (race, _) in OWN_RACES.iter().zip(on).filter(|(_, body)| body.is_some()) {
         forget_race(&mut scene, race);
     }
+    scene.defaults_used.extend(places);
     name_defaults(&mut scene, &scoped, name, shared);
     Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene, housing })
 }
@@ -373,7 +381,7 @@ fn name_defaults(
     };
     for list in [&mut scene.defaults_used, &mut scene.dynamics.defaults_used] {
         for used in list.iter_mut().filter(|used| of_bearing(&used.key)) {
-            used.key = scoped.shown(&used.key, true);
+            used.name(scoped);
         }
         list.retain(|used| !shared.contains(used));
         shared.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());

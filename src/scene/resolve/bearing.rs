@@ -11,10 +11,10 @@ use crate::scene::resolve::resolved::{DefaultUsed, Plot, RunPlot, Scene};
 use crate::scene::resolve::unused::refuse_unused;
 use crate::scene::resolve::{cage, dynamics, geometry, profile, solid};
 use crate::scene::tables::keys;
-use crate::scene::tables::keys::{DEFAULT_SETS, DEFAULTS, Kind, Need};
+use crate::scene::tables::keys::{DEFAULT_SETS, DEFAULTS, Need};
 use crate::scene::text::document::Document;
 use crate::scene::text::items::ItemRef;
-use crate::scene::text::units::{parse_number, parse_quantity};
+use crate::scene::text::value;
 use crate::scene::text::value::Checked;
 
 /// Validates the document as a whole and turns it into SI.
@@ -129,7 +129,7 @@ impl<'d> Reader<'d> {
     pub fn note_named(self, defaults: &mut Vec<DefaultUsed>) {
         let document = self.document;
         defaults.extend(self.defaults_used.into_iter().map(|mut used| {
-            used.key = document.shown(&used.key, true);
+            used.name(document);
             used
         }));
     }
@@ -149,10 +149,13 @@ impl<'d> Reader<'d> {
 
     /// The given number, else the default of the key table.
     pub fn number(&mut self, path: &str) -> f64 {
-        self.given_number(path).unwrap_or_else(|| {
-            self.note_default(path);
-            default_number(path, self.set()).unwrap_or(0.0)
-        })
+        self.given_number(path).unwrap_or_else(|| self.default_number(path, path))
+    }
+
+    /// The default number of the key table, which is then in use for the key `filled`.
+    fn default_number(&mut self, path: &str, filled: &str) -> f64 {
+        let value = self.note_default_of(path, filled);
+        value.and_then(|value| value.number()).unwrap_or(0.0)
     }
 
     pub fn required_number(&self, path: &str, because: &str) -> Result<f64, SceneError> {
@@ -187,17 +190,21 @@ impl<'d> Reader<'d> {
 
     /// The given number of a table of a list, else the default of the key table.
     pub fn of_item(&mut self, item: ItemRef, name: &str) -> f64 {
-        item.number(name).unwrap_or_else(|| {
-            let path = item.path(name);
-            self.note_default(&path);
-            default_number(&path, self.set()).unwrap_or(0.0)
-        })
+        item.number(name).unwrap_or_else(|| self.default_number(&item.path(name), &item.own_path(name)))
     }
 
     /// The given number, else one that follows from other keys.
     pub fn number_or(&mut self, path: &str, usual: f64, shown: &str, reason: &str) -> f64 {
         self.given_number(path).unwrap_or_else(|| {
-            self.note(path, shown, reason);
+            self.note(path, shown, reason).fill(path, usual);
+            usual
+        })
+    }
+
+    /// The same for a choice.
+    pub fn choice_or(&mut self, path: &str, usual: &'static str, reason: &str) -> &'static str {
+        self.choice_if_given(path).unwrap_or_else(|| {
+            self.note(path, usual, reason).fill(path, usual);
             usual
         })
     }
@@ -218,21 +225,32 @@ impl<'d> Reader<'d> {
 
     /// Records that the key table's default of `path` is in use.
     pub fn note_default(&mut self, path: &str) {
-        let set = self.set();
-        let Some((_, key)) = keys::find(path) else { return };
-        let Some((value, reason)) = key.need.default_in(set) else { return };
-        match key.need {
-            Need::BySet { .. } => self.note(path, value, &format!("{set} defaults: {reason}")),
-            _ => self.note(path, value, reason),
-        }
+        self.note_default_of(path, path);
     }
 
-    pub fn note(&mut self, key: &str, value: &str, reason: &str) {
-        self.defaults_used.push(DefaultUsed {
-            key: key.to_string(),
-            value: value.to_string(),
-            reason: reason.to_string(),
-        });
+    fn note_default_of(&mut self, path: &str, filled: &str) -> Option<Checked> {
+        let set = self.set();
+        let (_, key) = keys::find(path)?;
+        let (shown, reason) = key.need.default_in(set)?;
+        let value = value::default_in(key, set);
+        let used = match key.need {
+            Need::BySet { .. } => self.note(path, shown, &format!("{set} defaults: {reason}")),
+            _ => self.note(path, shown, reason),
+        };
+        used.fills.extend(value.clone().map(|value| (filled.to_string(), value)));
+        value
+    }
+
+    pub fn note(&mut self, key: &str, value: &str, reason: &str) -> &mut DefaultUsed {
+        let [key, value, reason] = [key, value, reason].map(str::to_string);
+        self.defaults_used.push(DefaultUsed { key, value, reason, fills: Vec::new() });
+        let last = self.defaults_used.len() - 1;
+        &mut self.defaults_used[last]
+    }
+
+    /// Records the value of a key that is not reported as a default.
+    pub fn follow(&mut self, path: &str, value: impl Into<Checked>) {
+        self.note(path, "", "").fill(path, value);
     }
 
     pub fn missing(&self, path: &str, because: &str) -> SceneError {
@@ -255,12 +273,14 @@ impl<'d> Reader<'d> {
                 density: self.number(&density),
             };
         }
-        self.note(
-            table,
-            "youngs_modulus 210 GPa, poisson_ratio 0.3, density 7850 kg/m^3",
-            "bearing steel",
-        );
-        Material::STEEL
+        let [modulus, poisson, density] = &paths;
+        let steel = Material::STEEL;
+        let value = "youngs_modulus 210 GPa, poisson_ratio 0.3, density 7850 kg/m^3";
+        self.note(table, value, "bearing steel")
+            .fill(modulus, steel.youngs_modulus)
+            .fill(poisson, steel.poisson_ratio)
+            .fill(density, steel.density);
+        steel
     }
 
     /// Load or prescribed motion of the five coordinates of a race.
@@ -273,13 +293,14 @@ impl<'d> Reader<'d> {
                 false => "{ load = \"0 N\" }",
             };
             let held = dynamics::drive_key(race, name, false);
-            if let Some(load) = self.profile(&dynamics::drive_key(race, name, true)) {
+            let loaded = dynamics::drive_key(race, name, true);
+            if let Some(load) = self.profile(&loaded) {
                 *drive = Drive::Load(load);
             } else if let Some(motion) = self.profile(&held) {
                 self.limit_displacement(&held, profile::largest(&motion), ball_radius)?;
                 *drive = Drive::Motion(motion);
             } else {
-                self.note(&table, zero, "the coordinate is free and unloaded");
+                self.note(&table, zero, "the coordinate is free and unloaded").fill(&loaded, 0.0);
             }
         }
         Ok(drives)
@@ -343,15 +364,4 @@ pub(crate) fn text(document: &Document, path: &str) -> Option<String> {
 
 pub(crate) fn below(table: &str) -> String {
     if table.is_empty() { " at the top".to_string() } else { format!(" to [{table}]") }
-}
-
-fn default_number(path: &str, set: &str) -> Option<f64> {
-    let (_, key) = keys::find(path)?;
-    let (value, _) = key.need.default_in(set)?;
-    match key.kind {
-        Kind::Quantity(dimension, _) | Kind::Profile(dimension, _) => {
-            parse_quantity(value, dimension).ok().map(|quantity| quantity.si)
-        }
-        _ => parse_number(value).ok(),
-    }
 }

@@ -167,8 +167,7 @@ pub(crate) fn in_run(
             let pockets = geometry.ball_count as f64 * pocket_volume(pocket_radius, inner, outer);
             let length = (mass / density + pockets) / (PI * (outer * outer - inner * inner));
             let reason = "follows from the cage's mass, density, radii and pockets";
-            reader.note("bearing.cage.length", &millimetres(length), reason);
-            length
+            reader.number_or("bearing.cage.length", length, &millimetres(length), reason)
         }
     };
     let [axial, transverse] = given_inertia.unwrap_or_else(|| {
@@ -178,8 +177,13 @@ pub(crate) fn in_run(
             full.axial / full.mass * mass,
             full.transverse / full.mass * mass
         );
-        reader.note("bearing.cage.inertia", &value, "a hollow cylinder of the cage's mass");
-        [full.axial / full.mass * mass, full.transverse / full.mass * mass]
+        let [axial, transverse] =
+            [full.axial / full.mass * mass, full.transverse / full.mass * mass];
+        reader
+            .note("bearing.cage.inertia", &value, "a hollow cylinder of the cage's mass")
+            .fill("bearing.cage.inertia.axial", axial)
+            .fill("bearing.cage.inertia.transverse", transverse);
+        [axial, transverse]
     });
     let pocket = match reader.choice("bearing.cage.pocket") {
         "spherical" => Pocket::Spherical,
@@ -191,8 +195,8 @@ pub(crate) fn in_run(
         pocket_pitch_radius: pitch.unwrap_or_else(|| {
             let reason = "the pockets are on the bearing's pitch circle";
             let value = millimetres(geometry.pitch_radius);
-            reader.note("bearing.cage.pocket_pitch_radius", &value, reason);
-            geometry.pitch_radius
+            let key = "bearing.cage.pocket_pitch_radius";
+            reader.number_or(key, geometry.pitch_radius, &value, reason)
         }),
         guidance,
         ring: [inner, outer],
@@ -201,8 +205,9 @@ pub(crate) fn in_run(
         length,
         force: force.unwrap_or_else(|| {
             let reason = "the source's stiffness (5.8), there at each node of a flexible cage";
-            reader.note("bearing.cage.contact.stiffness", "2e8 N/m", reason);
-            CageForce::Penalty { stiffness: 2e8 }
+            let (key, stiffness) = ("bearing.cage.contact.stiffness", 2e8);
+            reader.note(key, "2e8 N/m", reason).fill(key, Checked::Either(0, stiffness));
+            CageForce::Penalty { stiffness }
         }),
         friction: reader.number("bearing.cage.friction"),
         regularisation_speed: reader.number("bearing.cage.regularisation_speed"),
@@ -280,11 +285,17 @@ pub(crate) fn flexible(
     let [inner, outer] = contacts.ring;
     let volume = PI * (outer * outer - inner * inner) * contacts.length - pockets;
     let order = count(reader, "order", 2);
+    let counts =
+        [("quarter", cells.quarter), ("bar", cells.bar), ("wall", cells.wall), ("order", order)];
+    for (key, count) in counts {
+        reader.follow(&format!("bearing.cage.mesh.{key}"), count as f64);
+    }
+    reader.follow("bearing.cage.contact.at", "nodes");
     let mut given = |key: &str, usual: f64, shown: &str, reason: &str| {
         let path = format!("bearing.cage.{key}");
         reader.given_number(&path).unwrap_or_else(|| {
             if reduced || (flexible && key != "modes_to") {
-                reader.note(&path, shown, reason);
+                reader.note(&path, shown, reason).fill(&path, usual);
             }
             usual
         })
@@ -298,6 +309,9 @@ pub(crate) fn flexible(
         Some(Checked::Boolean(given)) => *given,
         _ => true,
     };
+    if reduced {
+        reader.follow("bearing.cage.corrections", corrections);
+    }
     let penalty = match (per_area, contacts.force) {
         (Some(stiffness), _) => Penalty::PerArea(stiffness),
         (None, CageForce::Penalty { stiffness } | CageForce::Hertz { stiffness }) => {

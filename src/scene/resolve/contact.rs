@@ -4,6 +4,7 @@ use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::Reader;
+use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 
 pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
@@ -56,7 +57,8 @@ fn curve(
             }
             None => {
                 let reason = "common boundary-lubrication set; the source's curve is not printed";
-                reader.note(path, &crate::scene::text::units::plain(*value), reason);
+                let value = *value;
+                reader.note(path, &plain(value), reason).fill(path, value);
             }
         }
     }

@@ -85,7 +85,7 @@ pub(crate) fn rotation(reader: &mut Reader, table: &str) -> Rotation {
     }
     let speed = format!("{table}.speed");
     Rotation::Speed(reader.profile(&speed).unwrap_or_else(|| {
-        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given");
+        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given").fill(&speed, 0.0);
         Profile::ZERO
     }))
 }
@@ -246,7 +246,12 @@ fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inert
         "mass {:.4e} kg, axial {:.4e} kg m^2, transverse {:.4e} kg m^2",
         ring.mass, ring.axial, ring.transverse
     );
-    reader.note(&format!("{}.inertia", side.table), &value, "a grooved ring of the race's sizes");
+    let [mass, axial, transverse] = &keys;
+    reader
+        .note(&format!("{}.inertia", side.table), &value, "a grooved ring of the race's sizes")
+        .fill(mass, ring.mass)
+        .fill(axial, ring.axial)
+        .fill(transverse, ring.transverse);
     Ok(Inertia { mass: ring.mass + added, ..ring })
 }
 
@@ -340,21 +345,19 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
                  "error control bounds the motion; long steps resolve the work of a prescribed speed less accurately",
             ),
         };
-        reader.note("numerics.energy_limit", &plain(limit), reason);
-        limit
+        reader.number_or("numerics.energy_limit", limit, &plain(limit), reason)
     });
     let options = RunOptions { start, integrator, stepping, energy_limit, ..usual };
     let output_interval = within(reader, "numerics.output_interval", end)?.unwrap_or_else(|| {
         let interval = end / 1000.0;
         let value = format!("{} s", plain(interval));
-        reader.note("numerics.output_interval", &value, "a thousandth of the run");
-        interval
+        let reason = "a thousandth of the run";
+        reader.number_or("numerics.output_interval", interval, &value, reason)
     });
     let window_start = within(reader, "output.window_start", end)?.unwrap_or_else(|| {
         let start = 0.5 * end;
         let reason = "means and spectra are taken over the second half of the run";
-        reader.note("output.window_start", &format!("{} s", plain(start)), reason);
-        start
+        reader.number_or("output.window_start", start, &format!("{} s", plain(start)), reason)
     });
     let channels = match reader.document.value("output.channels") {
         Some(Checked::Choices(names)) => {
@@ -406,7 +409,7 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
                 true => "a housing in explicit steps limits them",
                 false => "prescribed steps, as in the source",
             };
-            reader.note("numerics.integrator", "rk4", reason);
+            reader.choice_or("numerics.integrator", "rk4", reason);
             Integrator::RungeKutta
         }
         // Until the plan has chosen.
@@ -428,12 +431,12 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
         (_, _, Some(accuracy)) => Stepping::Accuracy(accuracy),
         _ if estimates => {
             let reason = "error in the races' motion of a thousandth of the largest overlap";
-            reader.note("numerics.accuracy", "0.001", reason);
-            Stepping::Accuracy(1e-3)
+            Stepping::Accuracy(reader.number_or("numerics.accuracy", 1e-3, "0.001", reason))
         }
         _ => {
-            reader.note("numerics.step_fraction", "0.5", "half the largest stable step");
-            Stepping::FractionOfLimit(0.5)
+            let reason = "half the largest stable step";
+            let fraction = reader.number_or("numerics.step_fraction", 0.5, "0.5", reason);
+            Stepping::FractionOfLimit(fraction)
         }
     };
     Ok(Steps { integrator, stepping, by_plan })

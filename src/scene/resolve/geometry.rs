@@ -40,9 +40,8 @@ pub(crate) fn geometry(
         contact_angle: sizes.contact_angle,
         radial_clearance: sizes.clearance,
     };
-    let race = |radius: f64, raceway: &Raceway, path: &str| RaceDimensions {
+    let race = |radius: f64, raceway: &Raceway| RaceDimensions {
         radius,
-        nominal_radius: reader.given_number(path),
         groove_radius: raceway.groove_radius,
         conformity: raceway.groove_radius / (2.0 * sizes.nominal_ball),
         osculation: sizes.nominal_ball / raceway.groove_radius,
@@ -52,8 +51,8 @@ pub(crate) fn geometry(
         clearance_through: sizes.through,
         radial_clearance: sizes.clearance,
         diametral_clearance: 2.0 * sizes.clearance,
-        inner_race: race(sizes.inner_radius, &sizes.inner, INNER),
-        outer_race: race(sizes.outer_radius, &sizes.outer, OUTER),
+        inner_race: race(sizes.inner_radius, &sizes.inner),
+        outer_race: race(sizes.outer_radius, &sizes.outer),
         bore_radius: reader.given_number("bearing.inner_race.bore_radius"),
         outer_radius: reader.given_number("bearing.outer_race.outer_radius"),
         length: reader.given_number("bearing.length"),
@@ -262,6 +261,10 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             ),
         );
     }
+    reader.follow(INNER, inner_given.unwrap_or(inner));
+    reader.follow(OUTER, outer_given.unwrap_or(outer));
+    reader.follow("bearing.ball.radius", nominal_ball);
+    reader.follow("bearing.pitch_radius", pitch);
     let raceway = |centre_radius: f64, groove_radius: f64| Raceway {
         centre_radius,
         centre_axial: 0.0,
@@ -299,8 +302,7 @@ fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneErr
         // With all radii the clearance follows.
         (false, ..) => return Ok(ClearanceThrough::Ball),
     };
-    reader.note(THROUGH, word, reason);
-    Ok(through_of(word))
+    Ok(through_of(reader.choice_or(THROUGH, word, reason)))
 }
 
 fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
@@ -312,8 +314,7 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     };
     let clearance = given_clearance(reader).unwrap_or_else(|| {
         let reason = "the parts just touch at the contact angle";
-        reader.note("bearing.clearance.radial", "0 um", reason);
-        0.0
+        reader.number_or("bearing.clearance.radial", 0.0, "0 um", reason)
     });
     let through = if clearance == 0.0 && !reader.is_given(THROUGH) {
         ClearanceThrough::Ball

@@ -175,8 +175,8 @@ fn settings(
     let fit_ramp = reader.given_number("housing.fit_ramp").or_else(|| {
         let ramp = 0.1 * end.filter(|_| ramps)?;
         let reason = "an interference grows in over a tenth of the run, as in section 2.4.1";
-        reader.note("housing.fit_ramp", &format!("{} s", plain(ramp)), reason);
-        Some(ramp)
+        let shown = format!("{} s", plain(ramp));
+        Some(reader.number_or("housing.fit_ramp", ramp, &shown, reason))
     });
     let width = reader.given_number("housing.width").or_else(|| {
         let length = bearing.dimensions.length;
@@ -184,17 +184,16 @@ fn settings(
             Some(length) => (format!("{} mm", plain(1e3 * length)), "the bearing's length"),
             None => ("that of the bore".to_string(), "without it and `bearing.length`"),
         };
-        reader.note("housing.width", &value, reason);
-        length
+        let used = reader.note("housing.width", &value, reason);
+        length.inspect(|length| {
+            used.fill("housing.width", *length);
+        })
     });
     let (unless_given, reason) = match friction {
         Some(_) => ("free", "friction supports the race along its axis"),
         None => ("fixed", "a shoulder or ring beside the bore; the bore has no friction"),
     };
-    let axial = reader.choice_if_given("housing.axial").unwrap_or_else(|| {
-        reader.note("housing.axial", unless_given, reason);
-        unless_given
-    });
+    let axial = reader.choice_or("housing.axial", unless_given, reason);
     let axial = if axial == "free" { Axial::Free } else { Axial::Fixed };
     let penalty = match document.value("housing.contact.stiffness") {
         Some(Checked::Either(0, stiffness)) => Penalty::PerArea(*stiffness),
@@ -267,7 +266,8 @@ fn fit(reader: &mut Reader, bearing: &Scene) -> Result<FitSize, SceneError> {
             Err(document.error("housing.outer_radius", problem))
         }
         (None, None) => {
-            reader.note("housing.fit", "{ radial = 0 um }", "a transition fit");
+            let key = "housing.fit.radial";
+            reader.note("housing.fit", "{ radial = 0 um }", "a transition fit").fill(key, 0.0);
             Ok(FitSize::Interference(0.0))
         }
     }

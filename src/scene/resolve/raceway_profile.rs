@@ -91,7 +91,8 @@ fn spall(
         let track = nominal_track(geometry, side);
         let reason = "in the nominal track of the balls";
         let value = format!("{} deg", plain(track.to_degrees()));
-        reader.note("bearing.spall.groove_angle", &value, reason);
+        let path = item.own_path("groove_angle");
+        reader.note("bearing.spall.groove_angle", &value, reason).fill(&path, track);
         track
     });
     let (width, on) = match part {
@@ -103,7 +104,10 @@ fn spall(
         (Some(depth), _) => depth,
         (None, given) => {
             let floor_radius = given.unwrap_or_else(|| {
-                reader.note("bearing.spall.floor_radius", "6 mm", "R of Fig. 5.29");
+                let path = item.own_path("floor_radius");
+                reader
+                    .note("bearing.spall.floor_radius", "6 mm", "R of Fig. 5.29")
+                    .fill(&path, USUAL_FLOOR);
                 USUAL_FLOOR
             });
             if 0.5 * length > floor_radius + edge_radius {
@@ -172,10 +176,8 @@ pub(crate) fn ball_deviations(
         return Ok(Vec::new());
     };
     // Checked by the key table: a whole number.
-    let seed = reader.given_number("bearing.ball.seed").unwrap_or_else(|| {
-        reader.note("bearing.ball.seed", "1", "another number gives other deviations");
-        1.0
-    });
+    let reason = "another number gives other deviations";
+    let seed = reader.number_or("bearing.ball.seed", 1.0, "1", reason);
     Ok(normal(seed as u64, balls).into_iter().map(|value| scatter * value).collect())
 }
 
@@ -214,7 +216,7 @@ fn dent(
         item.number(name).unwrap_or_else(|| {
             let value = part * diameter;
             let text = format!("{} um", plain(1e6 * value));
-            reader.note(&format!("bearing.dent.{name}"), &text, reason);
+            reader.note(&item.path(name), &text, reason).fill(&item.own_path(name), value);
             value
         })
     };
@@ -228,6 +230,6 @@ fn dent(
     };
     let shoulder_height = reader.of_item(item, "shoulder_height");
     let shape = DentShape { diameter, depth, shoulder_height, shoulder_width };
-    let groove_angle = item.number("groove_angle").unwrap_or(0.0);
+    let groove_angle = reader.of_item(item, "groove_angle");
     Ok(Dent { shape, side, angle, groove_angle })
 }

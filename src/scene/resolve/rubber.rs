@@ -96,12 +96,13 @@ pub(crate) fn rubber(
             return Err(reader.missing(&path("rubber_modulus"), because));
         }
     };
-    let locking = chain.unwrap_or_else(|| {
-        if table.is_none() {
-            reader.note(&path("chain"), &plain(CHAIN), "as in Tables 2.3 and 3.1");
+    let locking = match (chain, table) {
+        (None, None) => {
+            let reason = "as in Tables 2.3 and 3.1";
+            reader.number_or(&path("chain"), CHAIN, &plain(CHAIN), reason)
         }
-        CHAIN
-    });
+        (chain, _) => chain.unwrap_or(CHAIN),
+    };
     let bulk = match (bulk, ratio) {
         (Some(bulk), _) if bulk < modulus => {
             let reason = "rubber is nearly incompressible, and this is less than C_R of its network. Hint: give at least C_R, usually 100 times that and more";
@@ -116,7 +117,8 @@ pub(crate) fn rubber(
         (None, None) => {
             if table.is_none() {
                 let reason = "100 C_R, as in Tables 2.3 and 3.1";
-                reader.note(&path("bulk_ratio"), &plain(BULK_RATIO), reason);
+                let path = path("bulk_ratio");
+                reader.note(&path, &plain(BULK_RATIO), reason).fill(&path, BULK_RATIO);
             }
             BULK_RATIO * modulus
         }
@@ -136,8 +138,15 @@ pub(crate) fn rubber(
         let (gamma, tau) = (item.required("gamma")?, item.required("relaxation_time")?);
         maxwell.push(Maxwell { gamma, tau });
     }
+    reader.follow(&path("rubber_modulus"), modulus);
+    reader.follow(&path("chain"), locking);
+    reader.follow(&path("bulk_ratio"), ratio.unwrap_or(BULK_RATIO));
     if let Some(base) = base.filter(|_| maxwell.is_empty()) {
         maxwell = base.maxwell;
+        for (element, number) in maxwell.iter().zip(1..) {
+            reader.follow(&format!("{list}.{number}.gamma"), element.gamma);
+            reader.follow(&format!("{list}.{number}.relaxation_time"), element.tau);
+        }
         if table == Some("2.3") {
             let value = "those of Table 3.1";
             let reason = "Table 2.3 prints none; the source says that they were adjusted";
@@ -190,8 +199,7 @@ pub(crate) fn steps(reader: &mut Reader) -> RunSteps {
         Some(step) => Stepping::Fixed(step),
         None => Stepping::Accuracy(reader.given_number("numerics.accuracy").unwrap_or_else(|| {
             let reason = "of the largest stress so far, in each step";
-            reader.note("numerics.accuracy", &plain(ACCURACY), reason);
-            ACCURACY
+            reader.number_or("numerics.accuracy", ACCURACY, &plain(ACCURACY), reason)
         })),
     })
 }

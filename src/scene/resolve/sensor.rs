@@ -164,6 +164,8 @@ fn direction(reader: &mut Reader) -> Direction {
         "fixed" => {
             let [azimuth, elevation] = ["sensor.azimuth", "sensor.elevation"]
                 .map(|key| reader.given_number(key).unwrap_or_default());
+            reader.follow("sensor.azimuth", azimuth);
+            reader.follow("sensor.elevation", elevation);
             Direction::Fixed { azimuth, elevation }
         }
         "tangential" => Direction::Tangential,
@@ -239,6 +241,10 @@ fn telemeter(reader: &mut Reader, scene: &AssemblyScene) -> Result<SceneSensorKi
     let copper = |radius: f64| copper_resistance(radius, wire_radius, frequency);
     let own = given("sensor.resistance").unwrap_or_else(|| copper(radius));
     let resistance = [own, copper(transceiver_radius)];
+    reader.follow("sensor.loop_radius", radius);
+    reader.follow("sensor.transceiver_radius", transceiver_radius);
+    reader.follow("sensor.frequency", frequency);
+    reader.follow("sensor.resistance", own);
     let circuit =
         Telemeter { radius, transceiver_radius, wire_radius, capacitance, resistance, frequency };
     Ok(SceneSensorKind::Telemeter { bearing, circuit, distance, offset, runout })

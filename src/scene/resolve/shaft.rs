@@ -61,6 +61,12 @@ pub(crate) fn beam(reader: &mut Reader) -> Result<Option<SceneBeam>, SceneError>
     beam.mesh = mesh(reader)?;
     let in_elements = in_elements(reader)?;
     let start = reader.given_number("body.beam.start").unwrap_or_else(|| -0.5 * beam.length());
+    reader.follow("body.beam.start", start);
+    for (list, key) in [("segments", "inner_diameter"), ("unbalance", "angle")] {
+        for item in document.items(&format!("{TABLE}.{list}")) {
+            reader.follow(&item.own_path(key), 0.0);
+        }
+    }
     let length = beam.length();
     let at = |item: ItemRef| -> Result<f64, SceneError> {
         let at = item.required("at")?;

@@ -118,8 +118,10 @@ fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
     let plots = match document.value("output.plots") {
         Some(Checked::Choices(names)) => names.clone(),
         _ => {
-            reader.note("output.plots", "series, spectrum", "usual plots");
-            vec!["series", "spectrum"]
+            let usual = vec!["series", "spectrum"];
+            let value = Checked::Choices(usual.clone());
+            reader.note("output.plots", "series, spectrum", "usual plots").fill("output.plots", value);
+            usual
         }
     };
     scene.draw_series = plots.contains(&"series");
@@ -193,7 +195,8 @@ fn body(reader: &mut Reader) -> Result<SolidScene, SceneError> {
 
 /// Refuses keys of runs, plots and sweeps without effect on a solid.
 fn refuse_bearing_keys(document: &Document) -> Result<(), SceneError> {
-    const SHARED: [&str; 12] = [
+    const SHARED: [&str; 13] = [
+        "units",
         "base",
         "without",
         "title",
@@ -349,8 +352,9 @@ fn run(reader: &mut Reader) -> Result<Option<SolidRun>, SceneError> {
     let steps = if rubber { rubber::steps(reader) } else { explicit(reader) };
     let mut interval = |key: &str, parts: f64, reason: &str| -> Result<f64, SceneError> {
         Ok(within(reader, key, end)?.unwrap_or_else(|| {
-            reader.note(key, &format!("{} s", plain(end / parts)), reason);
-            end / parts
+            let value = end / parts;
+            reader.note(key, &format!("{} s", plain(value)), reason).fill(key, value);
+            value
         }))
     };
     let (rows, reason) = if rubber {
@@ -374,8 +378,8 @@ fn explicit(reader: &mut Reader) -> RunSteps {
         (None, Some(fraction)) => SolidStepping::FractionOfLimit(fraction),
         (None, None) => {
             let reason = "a fraction of the largest stable step of a solid";
-            reader.note("numerics.step_fraction", &plain(STEP_FRACTION), reason);
-            SolidStepping::FractionOfLimit(STEP_FRACTION)
+            let key = "numerics.step_fraction";
+            SolidStepping::FractionOfLimit(reader.number_or(key, STEP_FRACTION, &plain(STEP_FRACTION), reason))
         }
     };
     let reason = "1 % of the energy turned over";

@@ -51,6 +51,8 @@ pub(crate) fn spring(
         _ => reader.number("spring.from_at"),
     };
     let to_along = reader.given_number("spring.to_at").unwrap_or(from_x + along - to_x);
+    reader.follow("spring.from_at", along);
+    reader.follow("spring.to_at", to_along);
     let six = |what: &str| {
         SIX.map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
     };

@@ -1,7 +1,8 @@
 //! Rows of the key table: geometry and materials, conditions on the races, outputs.
 
 use crate::scene::tables::keys::{
-    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, Table, above, closed, list_table, open, table,
+    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, SI, Table, UNITS, above, closed, list_table, open,
+    table,
 };
 use crate::scene::text::units::Dimension::{
     Acceleration, Angle, Density, Force, Length, Mass, Moment, RotationSpeed, Stress,
@@ -85,6 +86,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("source", Kind::Text, Optional, "Where the numbers come from: table and section."),
     Key::new("base", Kind::Text, Optional, "Scene file that this scene inherits, relative to this file. Keys given here override those of the base."),
     Key::new("without", Kind::Text, Optional, "Keys, tables (`solid.mesh`) and named tables (`sensor.top`) of the base that are not inherited, separated by commas."),
+
+    Key::new(UNITS, Kind::Choice(&[SI]), Optional, "With `SI`, quantities are numbers in SI units (m, kg, s, N, rad, Pa), as in `resolved.json`. A quantity may still be a text with its unit."),
 
     Key::new(DEFAULTS, Kind::Choice(DEFAULT_SETS), Default { value: "engineering", reason: "friction and clearance as in real bearings" },
         "Set of defaults of `bearing.hertz`, `bearing.clearance.through`, `traction.points_across` and `traction.differential_sliding`: those of real bearings, or those of the dissertation."),

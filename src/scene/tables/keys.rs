@@ -92,6 +92,10 @@ pub enum Need {
     },
 }
 
+/// Key of the units of numbers without one.
+pub const UNITS: &str = "units";
+pub const SI: &str = "SI";
+
 /// Key that chooses the set of defaults.
 pub const DEFAULTS: &str = "defaults";
 pub const DEFAULT_SETS: &[&str] = &["engineering", "dissertation"];
@@ -325,6 +329,11 @@ pub const NAMED: [&str; 8] =
 
 /// Tables of [`NAMED`] with names of their own; all others use the names of bearings.
 pub const OWN_NAMES: [&str; 3] = ["body", "spring", "sensor"];
+
+/// The table whose names a table of [`NAMED`] uses.
+pub(crate) fn kind_of_names(table: &'static str) -> &'static str {
+    if OWN_NAMES.contains(&table) { table } else { "bearing" }
+}
 
 /// Key that a dotted path refers to.
 #[derive(Clone, Copy, Debug)]

@@ -240,7 +240,8 @@ of the run, up to 10000 s. Durations are positive, and times of a table increase
 const DIMENSIONS_INTRODUCTION: &str = "\
 ## Units
 The space between number and unit is optional. Numbers have a decimal point and an optional exponent (`1.5e3 N`). For units
-that are powers of ten of the SI unit, the value is the double nearest to the decimal number.
+that are powers of ten of the SI unit, the value is the double nearest to the decimal number. With `units = \"SI\"` at the top
+of a file, a number without a unit is in SI: the unit of the table with the value 1.
 
 ";
 

@@ -3,13 +3,13 @@
 use crate::scene::build::about::About;
 use crate::scene::error::{Place, Problem, SceneError};
 use crate::scene::tables::keys;
-use crate::scene::tables::keys::{Key, Leads};
+use crate::scene::tables::keys::{Key, Leads, SI, UNITS};
 use crate::scene::text::base::{BASE, WITHOUT};
 use crate::scene::text::source::{Format, Source};
 use crate::scene::text::sweep;
 use crate::scene::text::sweep::SweepAxis;
 use crate::scene::text::table::{Content, Item, Table};
-use crate::scene::text::tree::Node;
+use crate::scene::text::tree::{Entry, Node, Value};
 use crate::scene::text::value::Checked;
 use crate::scene::text::{source, tree, value};
 use std::sync::Arc;
@@ -31,6 +31,8 @@ pub struct Document {
     pub(crate) named: Vec<Named>,
     /// Name whose tables are being read or have been merged.
     pub(crate) scope: Option<String>,
+    /// True if numbers without a unit are quantities in SI.
+    pub(crate) in_si: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -70,8 +72,12 @@ impl Document {
     ) -> Result<Document, SceneError> {
         let source = source::check(source, format)?;
         let entries = tree::parse(&source, format)?;
+        let in_si = |entry: &Entry| {
+            entry.name == UNITS && matches!(&entry.node.value, Value::Text(text) if text == SI)
+        };
+        let in_si = entries.iter().any(in_si);
         let (source, tree) = (Arc::new(source), Table::default());
-        let mut document = Document { source, tree, named: Vec::new(), scope: None };
+        let mut document = Document { source, tree, named: Vec::new(), scope: None, in_si };
         document.tree = document.table("", "", entries)?;
         document.on_base(above)
     }
@@ -88,7 +94,7 @@ impl Document {
         let leads = self.row(path)?;
         let Leads { key, name, item, .. } = leads;
         let checked = match tree::composite_value(text) {
-            Some(value) => value::check(key, &Node { value, offset: 0 }).map_err(|e| e.problem),
+            Some(value) => value::check(key, &Node { value, offset: 0 }, false).map_err(|e| e.problem),
             None => value::check_bare(key, text),
         };
         let value = checked

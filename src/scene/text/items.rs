@@ -65,6 +65,11 @@ impl<'d> ItemRef<'d> {
         format!("{}.{name}", self.list)
     }
 
+    /// Path of a key of this table, with its number.
+    pub fn own_path(&self, name: &str) -> String {
+        format!("{}.{}.{name}", self.list, self.number)
+    }
+
     /// The error of a missing key, with an example of the key table.
     pub fn missing(&self, name: &str, because: &str) -> SceneError {
         let example = keys::find(&self.path(name))
@@ -112,7 +117,7 @@ impl Document {
         (!within).then_some(Problem::NoSuchItem { count })
     }
 
-    /// Replaces or adds a key of one table of an existing list; a name that inherits the list gets its own copy.
+    /// Replaces or adds a key of one table of a list, or of one after the last; a name that inherits the list gets its own copy.
     /// Returns the keys that were removed.
     pub(crate) fn put_item(&mut self, leads: &Leads, item: Item) -> Vec<&'static str> {
         let path = leads.key.table();
@@ -125,7 +130,15 @@ impl Document {
             tree.put_list(path, common);
         }
         let index = leads.item.map_or(0, |number| number - 1);
-        match tree.list_mut(path).and_then(|list| list.get_mut(index)) {
+        let list = tree.list_mut(path);
+        let entry = list.and_then(|list| {
+            if index == list.len() {
+                let content = Content::Table(Table::default());
+                list.push(Item { content, offset: None, named: leads.name.is_some() });
+            }
+            list.get_mut(index)
+        });
+        match entry {
             Some(Item { content: Content::Table(table), .. }) => table.exchange(leads.key, item),
             _ => Vec::new(),
         }

@@ -104,7 +104,7 @@ impl Document {
     }
 
     fn checked(&self, key: &'static Key, node: &Node, shown: &str) -> Result<Checked, SceneError> {
-        value::check(key, node).map_err(|error| {
+        value::check(key, node, self.in_si).map_err(|error| {
             let dot = if error.within.is_empty() { "" } else { "." };
             self.source.error(error.offset, &format!("{shown}{dot}{}", error.within), error.problem)
         })

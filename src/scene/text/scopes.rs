@@ -76,13 +76,16 @@ impl Document {
 
     /// The document for one name: tables without a name, overridden by those of this name.
     pub fn scoped(&self, name: &str) -> Document {
-        let mut scoped = self.clone();
-        scoped.scope = Some(name.to_string());
-        scoped.named.clear();
-        for named in self.named.iter().filter(|named| named.name == name) {
-            scoped.tree.lay_over(&named.tree, "");
-        }
-        scoped
+        let (source, tree, scope) = (self.source.clone(), self.merged(name), Some(name.to_string()));
+        Document { source, tree, named: Vec::new(), scope, in_si: self.in_si }
+    }
+
+    /// Tables without a name, overridden by those of this name.
+    pub(crate) fn merged(&self, name: &str) -> Table {
+        let mut tree = self.tree.clone();
+        let own = self.named.iter().filter(|named| named.name == name);
+        own.for_each(|named| tree.lay_over(&named.tree, ""));
+        tree
     }
 
     /// Refuses named tables in a scene whose bearing has no name; sensors are allowed.
@@ -134,9 +137,7 @@ impl Document {
         };
         let own: Vec<String> =
             self.named.iter().filter(overrides).map(|n| n.name.clone()).collect();
-        // Bodies, springs and sensors have their own names; all others use those of bearings.
-        let by = if keys::OWN_NAMES.contains(&table) { table } else { "bearing" };
-        let mut names = self.names(by).chain(self.names(table)).peekable();
+        let mut names = self.names(keys::kind_of_names(table)).chain(self.names(table)).peekable();
         let nothing = names.peek().is_some() && names.all(|name| own.iter().any(|own| own == name));
         (own, nothing)
     }
@@ -188,8 +189,7 @@ fn table_of(key: &Key) -> &'static str {
 
 /// Kind of the names of that table: bodies, springs and sensors have their own, all others those of bearings.
 fn kind_of(key: &Key) -> &'static str {
-    let table = table_of(key);
-    if keys::OWN_NAMES.contains(&table) { table } else { "bearing" }
+    keys::kind_of_names(table_of(key))
 }
 
 /// Problem of an unknown name, with the most similar known one.

@@ -63,6 +63,30 @@ impl Checked {
     }
 }
 
+impl From<f64> for Checked {
+    fn from(value: f64) -> Checked {
+        Checked::Number(value)
+    }
+}
+
+impl From<String> for Checked {
+    fn from(text: String) -> Checked {
+        Checked::Text(text)
+    }
+}
+
+impl From<bool> for Checked {
+    fn from(value: bool) -> Checked {
+        Checked::Boolean(value)
+    }
+}
+
+impl From<&'static str> for Checked {
+    fn from(word: &'static str) -> Checked {
+        Checked::Choice(word)
+    }
+}
+
 /// A problem and the offset of the element of a list or profile that has it.
 #[derive(Debug)]
 pub struct ValueError {
@@ -78,7 +102,8 @@ impl From<(usize, Problem)> for ValueError {
     }
 }
 
-pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
+/// Checks a value. `in_si`: a number without a unit is a quantity in SI.
+pub fn check(key: &'static Key, node: &Node, in_si: bool) -> Result<Checked, ValueError> {
     let here = |problem| ValueError::from((node.offset, problem));
     match (key.kind, &node.value) {
         (Kind::Text, Value::Text(text)) => Ok(Checked::Text(text.clone())),
@@ -98,7 +123,7 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
             | Kind::Profile(dimension, range)
             | Kind::TrueOrProfile(dimension, range),
             Value::Text(_) | Value::Number(_),
-        ) => quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here),
+        ) => quantity(key, &node.value, dimension, range, in_si).map(Checked::Number).map_err(here),
         (Kind::Vector(dimension, range), Value::List(items)) => {
             let wrong_length =
                 || Problem::NotThreeValues { found: items.len(), example: key.example() };
@@ -107,7 +132,8 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
             };
             let component = |item: &Node| match &item.value {
                 Value::Text(_) | Value::Number(_) => {
-                    quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))
+                    quantity(key, &item.value, dimension, range, in_si)
+                        .map_err(|p| (item.offset, p))
                 }
                 other => Err((item.offset, wrong_kind(key, other))),
             };
@@ -117,12 +143,12 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
         (
             Kind::Profile(dimension, range) | Kind::TrueOrProfile(dimension, range),
             Value::Table(entries),
-        ) => profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile),
+        ) => profile::read(key, (dimension, range), entries, node.offset, in_si).map(Checked::Profile),
         (Kind::Quantities(dimension, range), Value::List(items)) => {
-            quantities(key, items, node.offset, (dimension, range), true)
+            quantities(key, items, node.offset, (dimension, range), [true, in_si])
         }
         (Kind::QuantityList(dimension, range), Value::List(items)) => {
-            quantities(key, items, node.offset, (dimension, range), false)
+            quantities(key, items, node.offset, (dimension, range), [false, in_si])
         }
         (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
             either(key, kinds, &node.value).map_err(here)
@@ -153,7 +179,20 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             Value::Text(text.to_string())
         }
     };
-    check(key, &Node { value, offset: 0 }).map_err(|error| error.problem)
+    check(key, &Node { value, offset: 0 }, false).map_err(|error| error.problem)
+}
+
+/// The default of the key table in a set of defaults.
+pub fn default_in(key: &'static Key, set: &str) -> Option<Checked> {
+    let (value, _) = key.need.default_in(set)?;
+    match key.kind {
+        // The default of all vectors and lists of words is `none`.
+        Kind::Vector(..) => Some(Checked::Vector([0.0; 3])),
+        Kind::Choices(words) => {
+            Some(Checked::Choices(words.iter().copied().filter(|w| value.split(", ").any(|v| v == *w)).collect()))
+        }
+        _ => check_bare(key, value).ok(),
+    }
 }
 
 fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, Problem> {
@@ -162,7 +201,7 @@ fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, P
         let taken = match (kind, value) {
             (Kind::Number(range), Value::Number(text)) => number(key, text, *range),
             (Kind::Quantity(dimension, range), Value::Text(_)) => {
-                quantity(key, value, *dimension, *range)
+                quantity(key, value, *dimension, *range, false)
             }
             _ => continue,
         };
@@ -181,11 +220,12 @@ fn quantities(
     items: &[Node],
     offset: usize,
     (dimension, range): (Dimension, Range),
-    increasing: bool,
+    [increasing, in_si]: [bool; 2],
 ) -> Result<Checked, ValueError> {
     let mut values: Vec<f64> = Vec::new();
     for item in items {
-        let value = quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))?;
+        let value =
+            quantity(key, &item.value, dimension, range, in_si).map_err(|p| (item.offset, p))?;
         if increasing && values.last().is_some_and(|last| value <= *last) {
             let written = shown(&item.value);
             return Err((item.offset, Problem::NotIncreasing { written }).into());
@@ -342,14 +382,18 @@ pub(crate) fn quantity(
     value: &Value,
     dimension: Dimension,
     range: Range,
+    in_si: bool,
 ) -> Result<f64, Problem> {
-    let (Value::Text(text) | Value::Number(text)) = value else {
-        return Err(wrong_kind(key, value));
-    };
     let (written, of) = (shown(value), Some(dimension));
-    let quantity = parse_quantity(text, dimension);
-    let quantity = quantity.map_err(|problem| refused(key, problem, &written, range, of))?;
-    in_range(key, quantity.si, written, range, of)
+    let si = match value {
+        Value::Number(text) if in_si => parse_number(text),
+        Value::Text(text) | Value::Number(text) => {
+            parse_quantity(text, dimension).map(|quantity| quantity.si)
+        }
+        _ => return Err(wrong_kind(key, value)),
+    };
+    let si = si.map_err(|problem| refused(key, problem, &written, range, of))?;
+    in_range(key, si, written, range, of)
 }
 
 /// Problem of a text that is no plain number, or no quantity of a dimension.
