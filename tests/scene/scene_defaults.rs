@@ -92,7 +92,8 @@ fn a_scene_that_is_written_out_is_the_same() {
 /// Numbers are in SI, also those of a table that follow from others; only units that choose a law are written.
 #[test]
 fn a_scene_is_written_out_in_si() {
-    let text = format!("{BEARING}[inner_race]\nz = {{ load = \"-1 kN\" }}\n[numerics]\nend = \"20 ms\"\n");
+    let text =
+        format!("{BEARING}[inner_race]\nz = {{ load = \"-1 kN\" }}\n[numerics]\nend = \"20 ms\"\n");
     let document = Document::read_str(&text, Format::Toml, "scene.toml").unwrap();
     let (_, written) = resolved(&document).unwrap();
     let written: serde_json::Value = serde_json::from_str(&written).unwrap();

@@ -230,7 +230,9 @@ fn bearing(
         let at = reader.given_number("bearing.inner_at").unwrap_or(0.0);
         let outer_at = reader.given_number("bearing.outer_at").unwrap_or(at);
         let reversed = matches!(scoped.value("bearing.reversed"), Some(Checked::Boolean(true)));
-        for (side, (name, body, at)) in [("inner", inner, at), ("outer", outer, outer_at)].into_iter().enumerate() {
+        for (side, (name, body, at)) in
+            [("inner", inner, at), ("outer", outer, outer_at)].into_iter().enumerate()
+        {
             let on = body.map_or(OWN_RACES[side], |body| bodies[body]);
             reader.follow(&format!("bearing.{name}_on"), on.to_string());
             reader.follow(&format!("bearing.{name}_at"), at);

@@ -190,7 +190,8 @@ impl<'d> Reader<'d> {
 
     /// The given number of a table of a list, else the default of the key table.
     pub fn of_item(&mut self, item: ItemRef, name: &str) -> f64 {
-        item.number(name).unwrap_or_else(|| self.default_number(&item.path(name), &item.own_path(name)))
+        item.number(name)
+            .unwrap_or_else(|| self.default_number(&item.path(name), &item.own_path(name)))
     }
 
     /// The given number, else one that follows from other keys.

@@ -120,7 +120,9 @@ fn solid_scene(document: &Document) -> Result<SolidScene, SceneError> {
         _ => {
             let usual = vec!["series", "spectrum"];
             let value = Checked::Choices(usual.clone());
-            reader.note("output.plots", "series, spectrum", "usual plots").fill("output.plots", value);
+            reader
+                .note("output.plots", "series, spectrum", "usual plots")
+                .fill("output.plots", value);
             usual
         }
     };
@@ -379,7 +381,12 @@ fn explicit(reader: &mut Reader) -> RunSteps {
         (None, None) => {
             let reason = "a fraction of the largest stable step of a solid";
             let key = "numerics.step_fraction";
-            SolidStepping::FractionOfLimit(reader.number_or(key, STEP_FRACTION, &plain(STEP_FRACTION), reason))
+            SolidStepping::FractionOfLimit(reader.number_or(
+                key,
+                STEP_FRACTION,
+                &plain(STEP_FRACTION),
+                reason,
+            ))
         }
     };
     let reason = "1 % of the energy turned over";

@@ -205,7 +205,8 @@ fn generated(reader: &mut Reader, generator: &str) -> Result<MeshSource, SceneEr
             };
             let grading = reader.given_number("solid.mesh.cells.grading").unwrap_or(1.0);
             reader.follow("solid.mesh.cells.grading", grading);
-            reader.follow("solid.mesh.part", if part == Part::Quarter { "quarter" } else { "whole" });
+            reader
+                .follow("solid.mesh.part", if part == Part::Quarter { "quarter" } else { "whole" });
             let mesh = BushingMesh {
                 around: cells(reader, "around")?,
                 radial: cells(reader, "radial")?,

@@ -1,8 +1,8 @@
 //! Rows of the key table: geometry and materials, conditions on the races, outputs.
 
 use crate::scene::tables::keys::{
-    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, SI, Table, UNITS, above, closed, list_table, open,
-    table,
+    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, SI, Table, UNITS, above, closed, list_table,
+    open, table,
 };
 use crate::scene::text::units::Dimension::{
     Acceleration, Angle, Density, Force, Length, Mass, Moment, RotationSpeed, Stress,

@@ -94,7 +94,9 @@ impl Document {
         let leads = self.row(path)?;
         let Leads { key, name, item, .. } = leads;
         let checked = match tree::composite_value(text) {
-            Some(value) => value::check(key, &Node { value, offset: 0 }, false).map_err(|e| e.problem),
+            Some(value) => {
+                value::check(key, &Node { value, offset: 0 }, false).map_err(|e| e.problem)
+            }
             None => value::check_bare(key, text),
         };
         let value = checked

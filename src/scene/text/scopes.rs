@@ -76,7 +76,8 @@ impl Document {
 
     /// The document for one name: tables without a name, overridden by those of this name.
     pub fn scoped(&self, name: &str) -> Document {
-        let (source, tree, scope) = (self.source.clone(), self.merged(name), Some(name.to_string()));
+        let (source, tree, scope) =
+            (self.source.clone(), self.merged(name), Some(name.to_string()));
         Document { source, tree, named: Vec::new(), scope, in_si: self.in_si }
     }
 

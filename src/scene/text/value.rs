@@ -143,7 +143,8 @@ pub fn check(key: &'static Key, node: &Node, in_si: bool) -> Result<Checked, Val
         (
             Kind::Profile(dimension, range) | Kind::TrueOrProfile(dimension, range),
             Value::Table(entries),
-        ) => profile::read(key, (dimension, range), entries, node.offset, in_si).map(Checked::Profile),
+        ) => profile::read(key, (dimension, range), entries, node.offset, in_si)
+            .map(Checked::Profile),
         (Kind::Quantities(dimension, range), Value::List(items)) => {
             quantities(key, items, node.offset, (dimension, range), [true, in_si])
         }
@@ -188,9 +189,9 @@ pub fn default_in(key: &'static Key, set: &str) -> Option<Checked> {
     match key.kind {
         // The default of all vectors and lists of words is `none`.
         Kind::Vector(..) => Some(Checked::Vector([0.0; 3])),
-        Kind::Choices(words) => {
-            Some(Checked::Choices(words.iter().copied().filter(|w| value.split(", ").any(|v| v == *w)).collect()))
-        }
+        Kind::Choices(words) => Some(Checked::Choices(
+            words.iter().copied().filter(|w| value.split(", ").any(|v| v == *w)).collect(),
+        )),
         _ => check_bare(key, value).ok(),
     }
 }

@@ -133,9 +133,7 @@ impl Document {
                 Content::Value(Checked::Text(file)) if full == "solid.mesh.file" => {
                     json!(self.file_from(item, file).1)
                 }
-                Content::Value(value) => {
-                    json_of(keys::find(&full).map(|(_, key)| key.kind), value)
-                }
+                Content::Value(value) => json_of(keys::find(&full).map(|(_, key)| key.kind), value),
             };
             all.insert(name.clone(), value);
         }
