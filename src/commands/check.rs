@@ -1,7 +1,7 @@
 //! `bearing check SCENE`.
 
 use super::check_mesh::MeshFile;
-use super::{Changes, CommandResult, Outcome, assembly, echo_run, print, solid};
+use super::{Changes, CommandResult, Outcome, assembly, echo, print, solid};
 use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::output::visible::visible_line;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Document, Subject, resolve_subject};
@@ -16,7 +16,7 @@ pub struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     changes: Changes,
-    /// Print the resolved scene as JSON, in SI-based units
+    /// Print the scene with its defaults, and what follows from it, as JSON
     #[arg(long)]
     json: bool,
     /// Write the mesh of the solid, or of each housing, with its sets to a new file: Gmsh .msh, Abaqus .inp or ParaView .vtu
@@ -35,15 +35,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-/// Prints the resolved scene, its output, assumptions and defaults as JSON.
+/// Prints the scene, what follows from it, assumptions and defaults as JSON.
 pub fn print_json(
+    document: &Document,
     mut echo: Value,
-    output: Value,
     assumptions: &[Assumption],
     defaults: &[DefaultUsed],
 ) -> CommandResult {
-    echo["output"] = output;
-    for (name, notes) in echo_run::notes(assumptions, defaults) {
+    echo["scene"] = document.written_out(defaults);
+    for (name, notes) in echo::notes(assumptions, defaults) {
         echo[name] = notes;
     }
     print(&pretty(&echo))?;
@@ -72,7 +72,7 @@ pub fn print_lines(
         line("base", name);
     }
     lines(&mut line);
-    for used in defaults {
+    for used in echo::reported(defaults) {
         line("default", format!("{} = {} ({})", used.key, used.value, used.reason));
     }
     for assumption in assumptions {

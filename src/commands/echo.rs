@@ -1,89 +1,32 @@
-//! The resolved scene as JSON with units, its Hertz constants and kinematic frequencies.
+//! What follows from a scene of bearings, as JSON with units: sizes in use, moments of inertia, Hertz constants and
+//! kinematic frequencies; and its defaults.
 
-use bearing_dynamics::ch2_housing::bearing::geometry::{
-    BearingKind, ClearanceThrough, Material, Raceway,
-};
-use bearing_dynamics::ch2_housing::bearing::hertz::{HertzContact, HertzModel};
-use bearing_dynamics::equilibrium::statics::{COORDINATE_NAMES, StaticProblem};
-use bearing_dynamics::members::body::Condition;
+use bearing_dynamics::assembly::lists::Assembly;
+use bearing_dynamics::ch2_housing::bearing::geometry::{ClearanceThrough, Raceway};
+use bearing_dynamics::ch2_housing::bearing::hertz::HertzContact;
+use bearing_dynamics::equilibrium::statics::StaticProblem;
+use bearing_dynamics::motion::simulation::Stepping;
 use bearing_dynamics::output::results::{ResultsError, quantity};
-use bearing_dynamics::scene::build::statics::kinematic_ratios;
+use bearing_dynamics::scene::build::statics::{ball_mass, kinematic_ratios};
 use bearing_dynamics::scene::resolve::resolved::RaceDimensions;
-use bearing_dynamics::scene::{Cage, Scene};
+use bearing_dynamics::scene::{Assumption, DefaultUsed, RunSettings, Scene};
 use serde_json::{Map, Value, json};
 
 type Echo = Result<Value, ResultsError>;
 
-pub fn head(title: &Option<String>, source: &Option<String>) -> Map<String, Value> {
-    let given = [("title", title), ("source", source)].into_iter();
-    given.filter_map(|(name, text)| Some((name.into(), json!(text.as_ref()?)))).collect()
-}
-
-pub fn scene(scene: &Scene) -> Echo {
-    let mut echo = head(&scene.title, &scene.source);
-    echo.insert("bearing".into(), bearing(scene)?);
-    echo.insert("inner_race".into(), conditions(scene)?);
-    let mut outer = Map::new();
-    for (i, name) in COORDINATE_NAMES.iter().enumerate() {
-        outer.insert((*name).into(), coordinate(name, scene.outer_race[i], i)?);
-    }
-    echo.insert("outer_race".into(), Value::Object(outer));
-    let gravity: Result<Vec<_>, _> =
-        scene.gravity.iter().map(|g| quantity("gravity", *g, "m/s^2")).collect();
-    echo.insert(
-        "ball_forces".into(),
-        json!({ "gravity": gravity?, "centrifugal": scene.centrifugal }),
-    );
-    Ok(Value::Object(echo))
-}
-
-fn bearing(scene: &Scene) -> Echo {
+/// Sizes of a bearing after the clearance has been applied.
+pub fn geometry(scene: &Scene) -> Echo {
     let (geometry, sizes) = (&scene.geometry, &scene.dimensions);
-    let mut echo = json!({
-        "kind": match geometry.kind {
-            BearingKind::DeepGroove => "deep-groove",
-            BearingKind::AngularContact => "angular-contact",
-        },
-        "balls": geometry.ball_count,
-        "ball_phase": quantity("ball_phase", scene.ball_phase.to_degrees(), "deg")?,
-        "hertz": match scene.hertz {
-            HertzModel::HamrockBrewe => "hamrock-brewe",
-            HertzModel::Exact => "exact",
-        },
-        "clearance": {
-            "radial": length(sizes.radial_clearance)?,
-            "diametral": length(sizes.diametral_clearance)?,
-            "through": through(sizes.clearance_through),
-        },
+    Ok(json!({
+        "radial_clearance": length(sizes.radial_clearance)?,
+        "clearance_through": through(sizes.clearance_through),
         "pitch_radius": length(geometry.pitch_radius)?,
-        "contact_angle":
-            quantity("contact_angle", geometry.contact_angle.to_degrees(), "deg")?,
-        "ball": {
-            "radius": length(geometry.ball_radius)?,
-            "nominal_radius": length(sizes.nominal_ball_radius)?,
-            "material": material(&scene.ball_material)?,
-        },
-        "inner_race": race(&sizes.inner_race, &geometry.inner, &scene.inner_material)?,
-        "outer_race": race(&sizes.outer_race, &geometry.outer, &scene.outer_material)?,
-    });
-    for (part, name, value) in [
-        ("inner_race", "bore_radius", sizes.bore_radius),
-        ("outer_race", "outer_radius", sizes.outer_radius),
-    ] {
-        if let Some(value) = value {
-            echo[part][name] = length(value)?;
-        }
-    }
-    if let Some(value) = sizes.length {
-        echo["length"] = length(value)?;
-    }
-    if let Some(rating) = scene.dynamic_rating {
-        echo["rating"]["dynamic"] = quantity("dynamic", rating, "N")?;
-    }
-    if let Some(given) = &scene.cage {
-        echo["cage"] = cage(given)?;
-    }
-    Ok(echo)
+        "contact_angle": quantity("contact_angle", geometry.contact_angle.to_degrees(), "deg")?,
+        "ball_radius": length(geometry.ball_radius)?,
+        "ball_mass": quantity("mass", ball_mass(scene), "kg")?,
+        "inner_race": race(&sizes.inner_race, &geometry.inner)?,
+        "outer_race": race(&sizes.outer_race, &geometry.outer)?,
+    }))
 }
 
 /// Name, as in a scene, of the part that is resized to give the clearance.
@@ -100,15 +43,7 @@ fn length(value: f64) -> Echo {
     quantity("length", value * 1e3, "mm")
 }
 
-fn material(material: &Material) -> Echo {
-    Ok(json!({
-        "youngs_modulus": quantity("youngs_modulus", material.youngs_modulus / 1e9, "GPa")?,
-        "poisson_ratio": quantity("poisson_ratio", material.poisson_ratio, "1")?,
-        "density": quantity("density", material.density, "kg/m^3")?,
-    }))
-}
-
-fn race(sizes: &RaceDimensions, raceway: &Raceway, steel: &Material) -> Echo {
+fn race(sizes: &RaceDimensions, raceway: &Raceway) -> Echo {
     Ok(json!({
         "radius": length(sizes.radius)?,
         "groove_radius": length(sizes.groove_radius)?,
@@ -116,60 +51,65 @@ fn race(sizes: &RaceDimensions, raceway: &Raceway, steel: &Material) -> Echo {
         "osculation": quantity("osculation", sizes.osculation, "1")?,
         "groove_centre_radius": length(raceway.centre_radius)?,
         "groove_centre_axial": length(raceway.centre_axial)?,
-        "material": material(steel)?,
     }))
 }
 
-fn cage(cage: &Cage) -> Echo {
-    let mut echo = Map::new();
-    for (name, value) in [
-        ("pocket_radius", cage.pocket_radius),
-        ("inner_radius", cage.inner_radius),
-        ("outer_radius", cage.outer_radius),
-        ("race_clearance", cage.race_clearance),
-    ] {
-        if let Some(value) = value {
-            echo.insert(name.into(), length(value)?);
-        }
+/// Mass, moments of inertia and initial axial position of the moving bodies.
+pub fn inertia(assembly: &Assembly) -> Echo {
+    let mut all = Map::new();
+    for body in &assembly.bodies {
+        let Some(inertia) = body.inertia() else { continue };
+        let own = json!({
+            "mass": quantity("mass", inertia.mass, "kg")?,
+            "axial": quantity("axial", inertia.axial, "kg m^2")?,
+            "transverse": quantity("transverse", inertia.transverse, "kg m^2")?,
+            "centre": length(body.rest[0])?,
+        });
+        all.insert(body.name.clone(), own);
     }
-    if let Some(mass) = cage.mass {
-        echo.insert("mass".into(), quantity("mass", mass, "kg")?);
-    }
-    if let Some(guidance) = cage.guidance {
-        echo.insert("guidance".into(), json!(guidance.name()));
-    }
-    Ok(Value::Object(echo))
+    Ok(Value::Object(all))
 }
 
-/// A coordinate of the race, in um or deg.
-fn coordinate(name: &str, value: f64, index: usize) -> Echo {
-    if index < 3 {
-        quantity(name, value * 1e6, "um")
-    } else {
-        quantity(name, value.to_degrees(), "deg")
+/// Defaults in use; for a run also those of its motion, without those of statics alone.
+pub fn defaults(scene: &Scene) -> Vec<DefaultUsed> {
+    let mut all = scene.defaults_used.clone();
+    if scene.dynamics.run.is_none() {
+        return all;
     }
+    // In a run the centrifugal force follows from the motion of the balls.
+    all.retain(|used| used.key != "ball_forces.centrifugal");
+    let outer_moves = scene.dynamics.outer.is_some();
+    for used in all.iter_mut().filter(|used| outer_moves && used.key.starts_with("outer_race.")) {
+        used.reason = "where the outer race starts, before loads and foundation move it".into();
+    }
+    all.extend_from_slice(&scene.dynamics.defaults_used);
+    all
 }
 
-fn conditions(scene: &Scene) -> Echo {
-    let mut echo = Map::new();
-    for (i, condition) in scene.conditions.iter().enumerate() {
-        let name = COORDINATE_NAMES[i];
-        let entry = match (condition, i < 3) {
-            (Condition::Load(load), true) => json!({ "load": quantity(name, *load, "N")? }),
-            (Condition::Load(load), false) => json!({ "moment": quantity(name, *load, "N m")? }),
-            (Condition::Displacement(value), true) => {
-                json!({ "displacement": coordinate(name, *value, i)? })
-            }
-            (Condition::Displacement(value), false) => {
-                json!({ "tilt": coordinate(name, *value, i)? })
-            }
-        };
-        echo.insert(name.into(), entry);
-    }
-    if let Some(speed) = scene.inner_speed {
-        echo.insert("speed".into(), quantity("speed", speed * 30.0 / std::f64::consts::PI, "rpm")?);
-    }
-    Ok(Value::Object(echo))
+/// Defaults for people.
+pub fn reported(defaults: &[DefaultUsed]) -> impl Iterator<Item = &DefaultUsed> {
+    defaults.iter().filter(|used| used.is_reported())
+}
+
+pub fn notes(assumptions: &[Assumption], defaults: &[DefaultUsed]) -> [(&'static str, Value); 2] {
+    let assumption = |a: &Assumption| json!({ "name": a.name, "text": a.text });
+    let default =
+        |used: &DefaultUsed| json!({ "key": used.key, "value": used.value, "reason": used.reason });
+    [
+        ("assumptions", assumptions.iter().map(assumption).collect()),
+        ("defaults", reported(defaults).map(default).collect()),
+    ]
+}
+
+/// Integrator and step of a run, also those that the plan chooses.
+pub fn numerics(run: &RunSettings) -> Echo {
+    let (name, value, unit) = match run.options.stepping {
+        Stepping::Fixed(step) => ("step", step, "s"),
+        Stepping::FractionOfLimit(part) => ("step_fraction", part, "1"),
+        Stepping::Accuracy(accuracy) => ("accuracy", accuracy, "1"),
+    };
+    let integrator = run.options.integrator.name();
+    Ok(json!({ "integrator": integrator, name: quantity(name, value, unit)? }))
 }
 
 /// Sections of the summary in addition to the solution: Hertz contacts and kinematic frequencies.

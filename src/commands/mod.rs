@@ -9,7 +9,6 @@ pub mod compare;
 mod drift;
 pub mod earlier;
 pub mod echo;
-pub mod echo_run;
 mod life;
 pub mod memory;
 pub mod modes;
@@ -32,7 +31,6 @@ use bearing_dynamics::plan::Item;
 use bearing_dynamics::plan::counts::StageCounts;
 use bearing_dynamics::scene::build::about::About;
 use bearing_dynamics::scene::{Assumption, DefaultUsed, Document};
-use serde_json::Value;
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -169,7 +167,7 @@ pub fn placed(
 
 /// Scene, plan, assumptions and defaults for a summary.
 pub fn record(
-    scene: Value,
+    document: &Document,
     plan: Vec<Item>,
     assumptions: &[Assumption],
     defaults: &[DefaultUsed],
@@ -179,10 +177,10 @@ pub fn record(
     let default =
         |used: &DefaultUsed| (used.key.clone(), format!("{} ({})", used.value, used.reason));
     RunRecord {
-        scene,
+        scene: document.written_out(defaults),
         plan,
         ran: StageCounts::default(),
-        assumptions: assumptions.chain(defaults.iter().map(default)).collect(),
+        assumptions: assumptions.chain(echo::reported(defaults).map(default)).collect(),
         threads: 1,
         seconds,
         sections: Vec::new(),

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `scene.toml` or `scene.json` | the scene as written by the user |
 //! | meshes and bases | files that the scene refers to, in folders of the same names |
-//! | `resolved.json` | the scene with every value and its unit, every default filled in |
+//! | `resolved.json` | the scene as one file that can be read, in SI: bases merged, defaults filled in |
 //! | `summary.json`, `series.csv`, `series.npy`, `series.columns.json` | the expected results |
 //! | `tolerances.json` | tolerances of the comparison |
 //! | `README.txt` | how to use the pack |
@@ -212,7 +212,7 @@ fn readme(input: &PackInput) -> String {
     format!(
         "Case pack: a bearing, and the expected results for checking another implementation.
 
-1. Solve {scene} with your program (resolved.json has the same scene with all units and defaults).
+1. Solve {scene} with your program (resolved.json is the same scene as one file in SI, with its defaults).
 2. Write summary.json and series.csv in the same format into a folder, say candidate (series.npy
    and series.columns.json hold the same table and are optional).
    Copy the parts of summary.json that only repeat the input (scene, assumptions).

@@ -42,8 +42,33 @@ fn prefix(key: &str) -> String {
 }
 
 impl Problem {
-    pub(crate) fn refused(reason: impl Into<String>, advice: impl Into<String>) -> Problem {
-        Problem::Refused { reason: reason.into(), advice: advice.into() }
+    /// A length that is not more or less than another one, m.
+    pub(crate) fn order(
+        value: f64,
+        relation: &str,
+        (other_name, other): (&str, f64),
+        hint: &str,
+    ) -> Problem {
+        let (value, other) = (mm(value), mm(other));
+        Problem::Contradiction(format!(
+            "{value} is not {relation} {other_name}, {other}. Allowed: {relation} {other}. Hint: {hint}"
+        ))
+    }
+
+    /// A time (s) after the end of a run, or not before it.
+    pub(crate) fn after_the_end(value: f64, end: f64, may_be_equal: bool) -> Problem {
+        let (value, end) = (nine_digits(value), nine_digits(end));
+        let [relation, allowed] =
+            if may_be_equal { ["after", "up to"] } else { ["not before", "less than"] };
+        Problem::Contradiction(format!(
+            "a time of {value} s is {relation} the end of the run, {end} s. Allowed: {allowed} {end} s. Hint: check the \
+             units of both"
+        ))
+    }
+
+    /// Refused for a reason, which may end with a hint.
+    pub(crate) fn refused(reason: impl Into<String>) -> Problem {
+        Problem::Refused { reason: reason.into() }
     }
 }
 
@@ -187,103 +212,12 @@ pub enum Problem {
     Missing { because: String, example: String },
     #[error("given together with `{rival}`. Allowed: exactly one of the two. Hint: {advice}")]
     Exclusive { rival: String, advice: String },
-    #[error("refused: {reason}. Hint: {advice}")]
-    Refused { reason: String, advice: String },
+    #[error("refused: {reason}{}", if .reason.contains(". Hint: ") { "" } else { ". Hint: leave it out" })]
+    Refused { reason: String },
 
-    #[error(
-        "the groove bottom of the outer race ({outer}) is not outside that of the inner race ({inner}). \
-         Allowed: outer radius more than {inner}. Hint: the radii are measured from the bearing axis; were they exchanged?",
-        outer = mm(*.outer), inner = mm(*.inner)
-    )]
-    RacesOverlap { inner: f64, outer: f64 },
-    #[error(
-        "the gap between the races ({}) leaves no room for a ball at a radial clearance of {}. \
-         Allowed: clearance less than the gap. Hint: check the unit of the clearance", mm(*.gap), um(*.clearance)
-    )]
-    NoRoomForBall { gap: f64, clearance: f64 },
-    #[error(
-        "{what}radial clearance {clearance} is beyond 5 % of the ball radius ({ball}). Allowed: {} to {}. Hint: {advice}",
-        um(-0.05 * *.ball_radius), um(0.05 * *.ball_radius), clearance = um(*.clearance), ball = mm(*.ball_radius)
-    )]
-    ClearanceTooLarge { what: &'static str, clearance: f64, ball_radius: f64, advice: &'static str },
-    #[error(
-        "the nominal size {} differs from the {} that follows from the other sizes and the clearance. \
-         Allowed: {} to {}. Hint: check it, or leave it out so that it follows",
-        mm(*.nominal), mm(*.derived), mm(*.derived - *.allowed), mm(*.derived + *.allowed)
-    )]
-    NominalFarOff { nominal: f64, derived: f64, allowed: f64 },
-    #[error(
-        "the clearance {} is smaller than the contact angle allows. Allowed: more than {}. Hint: check its unit and sign",
-        um(*.clearance), um(*.least)
-    )]
-    InterferenceTooLarge { clearance: f64, least: f64 },
-    #[error(
-        "the groove radius {} does not fit a ball radius of {}. Allowed: more than {} to {}. \
-         Hint: a groove radius is 1.01 to 1.08 times the ball radius; was a diameter given?",
-        mm(*.groove), mm(*.ball), mm(*.ball), mm(1.2 * *.ball)
-    )]
-    GrooveDoesNotFit { groove: f64, ball: f64 },
-    #[error(
-        "{count} balls of radius {} do not fit on a pitch radius of {}. Allowed: up to {largest} balls. \
-         Hint: fewer or smaller balls, or check the races' radii",
-        mm(*.ball), mm(*.pitch)
-    )]
-    BallsDoNotFit { count: usize, largest: usize, ball: f64, pitch: f64 },
-    #[error(
-        "the pocket radius {} is smaller than the ball radius {}. Allowed: at least {}. Hint: a ball must fit its pocket",
-        mm(*.pocket), mm(*.ball), mm(*.ball)
-    )]
-    BallExceedsPocket { pocket: f64, ball: f64 },
-    #[error("{} is not {relation} {other_name}, {}. Allowed: {relation} {}. Hint: {advice}", mm(*.value), mm(*.other), mm(*.other))]
-    WrongOrder {
-        value: f64,
-        relation: &'static str,
-        other_name: &'static str,
-        other: f64,
-        advice: &'static str,
-    },
-    #[error(
-        "the pitch radius {} is not half way between the races. Allowed: {} to {}. Hint: leave it out to place it half way",
-        mm(*.pitch), mm(*.inner), mm(*.outer)
-    )]
-    PitchOutsideGap { pitch: f64, inner: f64, outer: f64 },
-    #[error(
-        "the displacement {} is more than a ball radius. Allowed: {} to {}. Hint: check the unit; bearings deflect by micrometres",
-        mm(*.displacement), mm(-*.ball), mm(*.ball)
-    )]
-    DisplacementTooLarge { displacement: f64, ball: f64 },
-
-    #[error(
-        "the fit of {} is more than a hundredth of the outer race's radius. Allowed: {} to {}. Hint: check its unit",
-        um(*.fit), um(-*.limit), um(*.limit)
-    )]
-    FitTooLarge { fit: f64, limit: f64 },
-    #[error(
-        "a moment of inertia of {axial} kg m^2 about the axis is more than twice that across it ({transverse} kg m^2), \
-         which is impossible for a rigid body. Allowed: up to {} kg m^2. Hint: were the two exchanged?", 2.0 * *.transverse
-    )]
-    ImpossibleInertia { axial: f64, transverse: f64 },
-    #[error(
-        "an unbalance of {unbalance} kg m is impossible for a torque-driven body of {mass} kg with an axial moment of inertia of {axial} \
-         kg m^2. Allowed: less than {:.4e} kg m, the square root of their product. Hint: check the units", (mass * axial).sqrt()
-    )]
-    ImpossibleUnbalance { unbalance: f64, mass: f64, axial: f64 },
-    #[error(
-        "the friction curve rises to {peak:.3}. Allowed: up to 2. Hint: the rise `b` is too large for the decay `c`"
-    )]
-    FrictionTooLarge { peak: f64 },
-    #[error(
-        "a time of {} s is {relation} {other_name}, {} s. Allowed: {allowed} {} s. Hint: {advice}",
-        nine_digits(*.value), nine_digits(*.other), nine_digits(*.other)
-    )]
-    WrongTime {
-        value: f64,
-        relation: &'static str,
-        other_name: &'static str,
-        other: f64,
-        allowed: &'static str,
-        advice: &'static str,
-    },
+    /// A contradiction of sizes, times or masses, with what is allowed and a hint.
+    #[error("{0}")]
+    Contradiction(String),
 
     #[error("not a list or range of values: {written}{}. Hint: write \"5 um, 0 um\" or \"0 deg .. 45 deg / 91\"", because(.reason))]
     BadSweep { written: String, reason: String },
@@ -317,11 +251,11 @@ fn quoted_list(words: &[&str]) -> String {
 }
 
 /// A length in mm to nine digits, enough to show what was written.
-fn mm(metres: f64) -> String {
+pub(crate) fn mm(metres: f64) -> String {
     format!("{} mm", nine_digits(metres * 1e3))
 }
 
-fn um(metres: f64) -> String {
+pub(crate) fn um(metres: f64) -> String {
     format!("{} um", nine_digits(metres * 1e6))
 }
 

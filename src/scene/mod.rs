@@ -19,7 +19,6 @@
 //! ```
 pub mod build;
 pub mod error;
-pub mod housing_error;
 pub mod resolve;
 pub mod tables;
 pub mod text;

@@ -240,9 +240,9 @@ fn check_and_plan_tell_what_sits_where() {
         assert!(said.contains(words), "{words:?} in\n{said}");
     }
     let understood: Value = serde_json::from_str(&done(&["check", &path, "--json"])).expect("JSON");
-    assert_eq!(understood["bearings"]["right"]["reversed"], true);
-    assert_eq!(understood["bearings"]["right"]["inner_on"], "shaft");
-    assert!((value(&understood["bodies"]["shaft"]["inertia"]["mass"]) - 0.67).abs() <= 1e-15);
+    assert_eq!(understood["scene"]["bearing"]["right"]["reversed"], true);
+    assert!(value(&understood["geometry"]["right"]["ball_radius"]) > 1.0, "in mm");
+    assert!((value(&understood["body_inertia"]["the body shaft"]["mass"]) - 0.67).abs() <= 1e-15);
     let planned = done(&["plan", &path]);
     for words in ["left: distance test", "right: traction", "body shaft motion"] {
         assert!(planned.contains(words), "{words:?} in\n{planned}");

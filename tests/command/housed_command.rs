@@ -254,8 +254,8 @@ fn plan_and_check_say_what_is_chosen_and_offered() {
     assert!(!said.contains("foundation"), "{said}");
     let echo = succeed(command("check", &place.scene("slow.toml", &slow), &["--json"]));
     let echo: Value = serde_json::from_str(&echo).unwrap();
-    assert_eq!(echo["housing"]["method"], "quasi-static");
-    assert_eq!(echo["solid"]["mesh"]["generate"], "housing-d");
+    assert_eq!(echo["scene"]["housing"]["method"], "quasi-static");
+    assert_eq!(echo["scene"]["solid"]["mesh"]["generate"], "housing-d");
 }
 
 /// The scenes that are shipped, each run as its method says.

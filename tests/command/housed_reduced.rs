@@ -277,10 +277,10 @@ fn what_a_reduced_housing_cannot_have_is_refused() {
     };
     let explicit =
         blow("explicit", "1 ms", "").replace("fit_ramp", "modes_to = \"9 kHz\"\nfit_ramp");
-    refused(&explicit, &["housing.modes_to", "only `reduced`"]);
+    refused(&explicit, &["housing.modes_to", "only with `method = \"reduced\"`"]);
     refused(
         &explicit.replace("modes_to = \"9 kHz\"", "bore_load = \"9 kN\""),
-        &["housing.bore_load", "only `reduced`"],
+        &["housing.bore_load", "only with `method = \"reduced\"`"],
     );
     let stepped = blow("reduced", "1 ms", "").replace("fit_ramp", "coupling_phase = 0.2\nfit_ramp");
     refused(&stepped, &["housing.coupling_phase"]);

@@ -32,9 +32,9 @@ fn where_a_mesh_is_put_is_told() {
     assert!(said.contains(words), "{said}");
     let echo: serde_json::Value =
         serde_json::from_str(&succeed(command("check", &scene, &["--json"]))).unwrap();
-    let mesh = &echo["solid"]["mesh"];
+    let mesh = &echo["scene"]["solid"]["mesh"];
     assert_eq!(mesh["axis"], "z");
-    assert_eq!(solids::number(&mesh["origin"][0]), 40e-3);
+    assert_eq!(mesh["origin"][0], 0.04);
     // And where it is not put.
     let message = refused(&place, &with_mesh(&place, &elsewhere(), 1, ""));
     for words in [

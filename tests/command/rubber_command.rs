@@ -242,11 +242,7 @@ fn what_does_not_fit_rubber_is_refused() {
             with("youngs_modulus = \"1 GPa\""),
             &["solid.material.youngs_modulus", "\"linear-elastic\""],
         ),
-        (
-            "check",
-            (law, String::new()),
-            &["solid.material.table", "law \"elastomer\"", "[solid.material]"],
-        ),
+        ("check", (law, String::new()), &["solid.material.table", "law = \"elastomer\""]),
         (
             "check",
             (table, String::new()),
@@ -303,18 +299,18 @@ fn what_does_not_fit_rubber_is_refused() {
             behind("[[solid.material.maxwell]]\ngamma = 1\nrelaxation_time = \"0 s\""),
             &["relaxation_time", "Allowed"],
         ),
-        ("check", behind("[solid]\ndamping = \"77 1/s\""), &["solid.damping", "Maxwell elements"]),
-        ("check", behind("[solid]\nspin = \"77 rpm\""), &["solid.spin", "without inertia"]),
-        ("check", behind("[modes]\ncount = 3"), &["modes", "without inertia"]),
+        ("check", behind("[solid]\ndamping = \"77 1/s\""), &["solid.damping", "linear-elastic"]),
+        ("check", behind("[solid]\nspin = \"77 rpm\""), &["solid.spin", "linear-elastic"]),
+        ("check", behind("[modes]\ncount = 3"), &["modes", "linear-elastic"]),
         (
             "check",
             behind("[numerics]\nend = \"1 ms\"\nmethod = \"runge-kutta\""),
-            &["numerics.method", "without inertia"],
+            &["numerics.method", "linear-elastic"],
         ),
         (
             "check",
             behind("[numerics]\nend = \"1 ms\"\nstep_fraction = 0.5"),
-            &["numerics.step_fraction", "without inertia"],
+            &["numerics.step_fraction", "linear-elastic"],
         ),
         (
             "check",
@@ -436,7 +432,7 @@ fn check_and_plan_say_what_rubber_it_is() {
     // A quarter of π/4 (36² − 20²) mm² × 20 mm.
     let echo = succeed(command("check", &scene, &["--json"]));
     let echo: serde_json::Value = serde_json::from_str(&echo).unwrap();
-    assert_eq!(echo["solid"]["material"]["law"], "elastomer");
+    assert_eq!(echo["scene"]["solid"]["material"]["law"], "elastomer");
     let volume = echo["mesh"]["volume"]["value"].as_f64().unwrap();
     let exact = 0.25 * 0.25 * std::f64::consts::PI * (0.036f64.powi(2) - 0.02f64.powi(2)) * 0.02;
     // Ten-node elements follow the sleeves to the fourth order of 22.5 degrees, their four points to the second.

@@ -15,8 +15,8 @@ fn check_names_the_base_and_takes_its_keys() {
         &scene("rotor_in_loose_pillow_blocks.toml"),
     ]))
     .unwrap();
-    assert_eq!(echo["title"], "Flexible rotor on two bearings in two loose pillow blocks");
-    assert_eq!(echo["source"], "Table 4.1, sections 4.2 and 4.3");
+    assert_eq!(echo["scene"]["title"], "Flexible rotor on two bearings in two loose pillow blocks");
+    assert_eq!(echo["scene"]["source"], "Table 4.1, sections 4.2 and 4.3");
 }
 
 /// A pack holds what its scene is on, and can be solved where it lies.

@@ -34,8 +34,7 @@ fn sensors_have_columns_spectra_and_pictures() {
     );
     let understood: serde_json::Value =
         serde_json::from_str(&done(&["check", &path, "--json"])).unwrap();
-    let of = &understood["sensors"]["telemeter"];
-    assert_eq!(of["loop_radius"]["value"], 31.25, "{understood}");
+    assert_eq!(understood["scene"]["sensor"]["telemeter"]["kind"], "telemeter", "{understood}");
     done(&["run", &path, "--out", &text(&out)]);
     let columns = read(&out.join("series.columns.json"));
     for column in ["telemeter_reflection", "top_acceleration"] {

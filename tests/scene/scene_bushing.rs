@@ -109,7 +109,7 @@ fn what_cannot_be_is_told() {
         ([("table = \"3.1\"", "table = \"3.1\"\ncoupling_phase = 0.5")], "`method = \"explicit\"`"),
         (
             [("table = \"3.1\"", "table = \"3.1\"\nmethod = \"implicit\"\nstep_fraction = 0.5")],
-            "the chosen method does not use it",
+            "only with `method = \"explicit\"`",
         ),
         ([("to = \"outer_race\"", "to = \"outer_rac\"")], "did you mean outer_race?"),
         (

@@ -363,7 +363,7 @@ fn run(random: &mut Random, bytes: &[u8], format: Format, words: &[String]) -> b
         Ok(scene) => check_scene(scene),
         Err(error) => check_error(error),
     }
-    for axis in document.sweep().to_vec() {
+    for axis in document.sweep() {
         for index in [0, axis.len() - 1] {
             let value = axis.value(index).expect("the sweep has this value");
             document.set(&axis.key, &value).unwrap_or_else(|error| panic!("{error}"));

@@ -31,7 +31,7 @@ fn races_of_a_bearing_stand_about_each_other() {
         ))
     };
     let far = one("inner_at = \"-100 mm\"\nouter_at = \"0 mm\"", "").unwrap();
-    let words = "bearing.a: refused: its inner race is at -100.0000 mm along the axis and its outer one at 0.0000 mm";
+    let words = "bearing.a.outer_at: refused: its inner race is at -100.0000 mm along the axis and its outer one at 0.0000 mm";
     assert!(far.contains(words) && far.contains("within 6.5500 mm"), "{far}");
     assert_eq!(one("inner_at = \"-100 mm\"", ""), None);
     for (outer_at, fits) in [("6.5 mm", true), ("-6.5 mm", true), ("6.6 mm", false)] {

@@ -92,12 +92,12 @@ fn a_sensor_that_cannot_be_is_refused() {
         (
             CAGED,
             &format!("{}\noffset = \"1 mm\"", on("cage")),
-            &["sensor.a.offset", "not of kind = \"accelerometer\""],
+            &["sensor.a.offset", "only with `kind = \"telemeter\"`"],
         ),
         (
             CAGED,
             &format!("{telemeter}\nangle = \"3 deg\""),
-            &["sensor.t.angle", "not of kind = \"telemeter\""],
+            &["sensor.t.angle", "only with `kind = \"accelerometer\"`"],
         ),
         (
             CAGED,

@@ -169,7 +169,7 @@ fn faults_of_shafts_in_elements_say_what_is_wrong() {
             beam("speed = \"1000 rpm\"\nz = { load = \"-100 N\" }", ELEMENTS),
             "whose loads act at sections",
         ),
-        (in_elements("modes_to = \"3 kHz\""), "all of their frequencies"),
+        (in_elements("modes_to = \"3 kHz\""), "only with `body.beam.mesh.method = \"reduced\"`"),
         (in_elements("internal_damping = \"1 1/s\""), "body.shaft.beam.internal_damping: refused"),
         (
             in_elements("damping = \"10 1/s\"\ndamped_motion = \"relative-to-rigid\""),
@@ -178,7 +178,7 @@ fn faults_of_shafts_in_elements_say_what_is_wrong() {
         (in_elements("disc = [{ at = \"0 mm\", mass = \"1 kg\" }]"), "give its `axial`, above 0"),
         (
             turning("mesh = { order = 1, race_stiffness = \"1e9 N/m\" }"),
-            "are joined directly to the sections",
+            "only with `method = \"explicit\"`",
         ),
         (turning("mesh = { order = 1, method = \"implicit\" }"), "reduced"),
         (

@@ -1,15 +1,14 @@
 //! `bearing check` of a scene of bearings.
 
-use super::echo::{echo, motion, numerics};
 use super::housing::Housing;
 use super::lists::Lists;
 use super::plan::of_housings;
 use super::{defaults, housings, lines};
+use crate::commands::CommandResult;
 use crate::commands::check::{Line, print_json, print_lines};
 use crate::commands::check_mesh::{MeshFile, print_written};
-use crate::commands::echo::through;
+use crate::commands::echo::{geometry, inertia, numerics, through};
 use crate::commands::run::{planned_request, request};
-use crate::commands::{CommandResult, echo_run};
 use bearing_dynamics::ch2_housing::bearing::geometry::BearingKind;
 use bearing_dynamics::ch5_cage::raceway_profile::{RacewayProfile, Spall, Surface};
 use bearing_dynamics::motion::plan::race_freedom;
@@ -24,6 +23,7 @@ use bearing_dynamics::scene::build::sensors::{Direction, SceneSensor, SceneSenso
 use bearing_dynamics::scene::build::statics::static_problem;
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
 use bearing_dynamics::scene::{CageInRun, CageMethod, Document, RunSettings, Scene};
+use serde_json::{Value, json};
 
 pub fn run(
     document: &Document,
@@ -67,20 +67,25 @@ pub fn run(
         print_lines(document, &common.title, lines, &common.assumptions, &defaults)?;
         return print_written(written);
     }
-    let mut understood = echo(&Lists::made(scene, made))?;
-    if let (Some(run), None) = (scene.run(), scene.one().filter(|one| one.housing.is_some())) {
-        understood["motion"] = motion(scene)?;
-        understood["numerics"] = numerics(run, housings.first().map(|of| &of.scene.housing))?;
+    let mut found = json!({});
+    let mut put = |part: &str, bearing: &Option<String>, value: Value| match bearing {
+        Some(name) => found[part][name] = value,
+        None => found[part] = value,
+    };
+    for placed in &scene.bearings {
+        put("geometry", &placed.name, geometry(&placed.scene)?);
     }
     for housing in &housings {
-        let of = match &housing.name {
-            Some(name) => &mut understood["bearings"][name],
-            None => &mut understood,
-        };
-        of["seat"] = seat_section(&housing.setup)?;
-        of["mesh"] = mesh_section(&housing.built)?;
+        put("seat", &housing.name, seat_section(&housing.setup)?);
+        put("mesh", &housing.name, mesh_section(&housing.built)?);
     }
-    print_json(understood, echo_run::output(common)?, &common.assumptions, &defaults)
+    if let Some(run) = scene.run() {
+        found["body_inertia"] = inertia(Lists::made(scene, made).assembly()?)?;
+        if scene.housing_method() != Some(HousingMethod::QuasiStatic) {
+            found["numerics"] = numerics(run)?;
+        }
+    }
+    print_json(document, found, &common.assumptions, &defaults)
 }
 
 /// Bearings, their housings and their mounting (`mounting`), one line each.

@@ -1,7 +1,6 @@
 //! Commands on a scene of bearings, and the functions that they share.
 
 pub mod check;
-pub mod echo;
 pub mod housing;
 pub mod housings;
 pub mod inertia;
@@ -13,18 +12,18 @@ pub mod statics;
 mod whirl;
 mod windows;
 
-use super::echo_run;
+use super::echo;
 use bearing_dynamics::equilibrium::lists::StaticAssembly;
 use bearing_dynamics::motion::plan::race_freedom;
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::plan::Item;
-use bearing_dynamics::scene::DefaultUsed;
 use bearing_dynamics::scene::build::assembly::{
     AssemblyScene, Carrier, PlacedBearing, PlacedHousing,
 };
 use bearing_dynamics::scene::build::statics::{static_problem, still_lists};
 use bearing_dynamics::scene::resolve::housing_scene::HousingMethod;
+use bearing_dynamics::scene::{DefaultUsed, Document};
 use lists::Lists;
 use std::error::Error;
 
@@ -44,7 +43,7 @@ pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
         "numerics.energy_limit",
     ];
     let of_bearing = |placed: &PlacedBearing| {
-        let mut all = echo_run::defaults(&placed.scene);
+        let mut all = echo::defaults(&placed.scene);
         let Some(PlacedHousing { settings, solid }) = &placed.housing else { return all };
         for used in &mut all {
             if used.reason.starts_with("where the outer race starts") {
@@ -72,9 +71,14 @@ pub fn still(lists: &Lists) -> Fallible<StaticAssembly<'static>> {
 }
 
 /// Scene, plan, assumptions and defaults for the summary.
-pub fn record(lists: &Lists, plan: Vec<Item>, seconds: Vec<(String, f64)>) -> Fallible<RunRecord> {
+pub fn record(
+    document: &Document,
+    lists: &Lists,
+    plan: Vec<Item>,
+    seconds: Vec<(String, f64)>,
+) -> RunRecord {
     let (assumptions, defaults) = (&lists.scene.common().assumptions, defaults(lists.scene));
-    Ok(super::record(echo::echo(lists)?, plan, assumptions, &defaults, seconds))
+    super::record(document, plan, assumptions, &defaults, seconds)
 }
 
 /// Name of a bearing; "bearing" for a single one.

@@ -119,7 +119,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let seconds = vec![("solve".into(), start.elapsed().as_secs_f64())];
-    let mut record = record(&lists, plan::of_statics(&lists, &housings)?, seconds)?;
+    let mut record = record(document, &lists, plan::of_statics(&lists, &housings)?, seconds);
     record.ran.clone_from(&moment.solution.ran);
     record.sections.push(("warnings".into(), json!(warnings)));
     if let Some(why) = &no_whirl {

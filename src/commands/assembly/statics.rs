@@ -4,10 +4,10 @@ use super::housing::Housing;
 use super::housings::{self, Equilibrium};
 use super::inertia::FrequencyRatio;
 use super::lists::Lists;
-use super::{Fallible, defaults, echo, name_of, plan};
+use super::{Fallible, defaults, name_of, plan};
 use crate::commands::asked::Asked;
 use crate::commands::earlier::{Writes, remove_earlier};
-use crate::commands::echo::{frequencies, frequency_line, hertz, sections};
+use crate::commands::echo::{frequencies, frequency_line, geometry, hertz, sections};
 use crate::commands::life::Life;
 use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, pictures, print, record, table};
@@ -97,7 +97,7 @@ pub fn find_equilibrium<'s>(
     };
     let planned = plan::of_statics(&lists, &housings)?;
     let assumptions = &scene.common().assumptions;
-    let mut record = record(echo::echo(&lists)?, planned, assumptions, &defaults, seconds);
+    let mut record = record(document, planned, assumptions, &defaults, seconds);
     record.ran.clone_from(&moment.solution.ran);
     for (tally, bore) in record.ran.solids.iter_mut().zip(&bores) {
         tally.absorb(&bore.ran);
@@ -112,6 +112,8 @@ pub fn find_equilibrium<'s>(
             record.sections.push(("frequencies".into(), by_name(scene, speeds)?));
         }
     }
+    let sizes = by_name(scene, scene.bearings.iter().map(|placed| geometry(&placed.scene)))?;
+    record.sections.push(("geometry".into(), sizes));
     let balls = moment.solution.bearings.iter().map(|bearing| &bearing.balls);
     let lives = scene.bearings.iter().zip(balls);
     let lives: Vec<_> = lives.map(|(placed, balls)| Life::of(&placed.scene, balls)).collect();

@@ -61,7 +61,7 @@ pub fn run(asked: &Asked, scene: &SolidScene, rubber: &RubberScene) -> CommandRe
         seconds.push(("vibrations".into(), start.elapsed().as_secs_f64()));
     }
     let stress = rubber_stresses(model, &found.state)?;
-    let mut record = record(scene, plan::items(scene, rubber, &prepared, None), seconds)?;
+    let mut record = record(document, scene, plan::items(scene, rubber, &prepared, None), seconds);
     record.ran.solids = vec![ran];
     let section = match &responses {
         Some((asked, responses)) => Some(harmonic_section(&asked.set, axis(asked), responses)?),
@@ -154,7 +154,7 @@ fn responses(
     ran: &mut Counts,
 ) -> Result<Vec<Answer>, Box<dyn std::error::Error>> {
     let model = vibrating(&prepared.setup, asked)
-        .map_err(|error| placed(document, Some(error.about()), error))?;
+        .map_err(|error| placed(document, error.about(), error))?;
     Ok(vibrations(&model, &asked.frequencies, ran)?)
 }
 

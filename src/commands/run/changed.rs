@@ -15,13 +15,7 @@ const FREE: [&str; 4] = ["title", "end", "plots", "window_start"];
 /// Text of the differences between the summary in a folder and the present scene; empty without a summary.
 pub fn since(folder: &Path, record: &RunRecord) -> String {
     let Ok(before) = json::read(&folder.join("summary.json")) else { return String::new() };
-    let mut found = differences(&before["scene"], &record.scene);
-    if let Some((name, motion)) = record.sections.iter().find(|(name, _)| name == "motion") {
-        let known: Vec<String> = found.iter().map(|(path, _)| path.clone()).collect();
-        let mut of_motion = differences(&before[name], motion);
-        of_motion.retain(|(path, _)| !known.contains(path));
-        found.append(&mut of_motion);
-    }
+    let found = differences(&before["scene"], &record.scene);
     if found.is_empty() {
         return "; bodies and loads are unchanged: check [numerics] (accuracy, integrator, step, start, energy_limit) and the mesh"
             .into();
@@ -53,6 +47,6 @@ fn differences(before: &Value, now: &Value) -> Vec<(String, String)> {
 
 fn text(leaf: &Leaf) -> String {
     let number = leaf.value.as_real().map(|value| rounded(value).to_string());
-    let value = number.unwrap_or_else(|| leaf.value.to_string());
+    let value = number.unwrap_or_else(|| leaf.value.to_string().trim_matches('"').to_string());
     if matches!(leaf.unit.as_str(), "" | "1") { value } else { format!("{value} {}", leaf.unit) }
 }

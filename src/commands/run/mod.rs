@@ -82,6 +82,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let read = start.elapsed().as_secs_f64();
     let interrupted = interruption(|| {})?;
     let job = Job {
+        document: &document,
         prepared: &prepared,
         read,
         folder: &folder,
@@ -119,6 +120,7 @@ pub fn run_silently(
     check_end(Path::new(document.name()), &subject)?;
     let prepared = Prepared::new(document, &subject)?;
     let job = Job {
+        document,
         prepared: &prepared,
         read: start.elapsed().as_secs_f64(),
         folder,
@@ -152,6 +154,7 @@ fn kept_state(arguments: &Arguments, folder: &Path) -> Result<Option<StateFile>,
 
 /// A run into a claimed folder.
 struct Job<'j> {
+    document: &'j Document,
     prepared: &'j Prepared<'j>,
     /// Wall time of its preparation, s.
     read: f64,
@@ -187,7 +190,7 @@ impl Job<'_> {
         let mut session = match kept {
             Some(file) => match state::resume(folder, file, parts, &request) {
                 Err(error @ StateError::Scene { .. }) => {
-                    let now = prepared.record(&request, None, Vec::new())?;
+                    let now = prepared.record(self.document, &request, None, Vec::new())?;
                     return Err(format!("{error}{}", changed::since(folder, &now)).into());
                 }
                 other => other?,
@@ -228,7 +231,14 @@ impl Job<'_> {
         let last = StateRecord { stopped, error, seconds: seconds.simulate, ..record };
         state::save(folder, &mut session, &last)?;
         let request = (&request, choice);
-        let text = write_results(folder, prepared, &mut session, request, stopped_by, &seconds)?;
+        let text = write_results(
+            folder,
+            (self.document, prepared),
+            &mut session,
+            request,
+            stopped_by,
+            &seconds,
+        )?;
         self.print(&text)?;
         Ok(match stop {
             Stop::Complete => End::Complete,

@@ -4,6 +4,7 @@ use crate::commands::assembly::housing::Housing;
 use crate::commands::assembly::lists::Lists;
 use crate::commands::assembly::shapes::{Shapes, shapes};
 use crate::commands::assembly::{self, housings, plan};
+use crate::commands::echo::inertia;
 use crate::commands::{rubber, solid};
 use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::kinematics::vec3::Vec3;
@@ -353,6 +354,7 @@ impl<'s> Prepared<'s> {
 
     pub fn record(
         &self,
+        document: &Document,
         request: &RunRequest,
         choice: Option<&Choice>,
         seconds: Vec<(String, f64)>,
@@ -379,7 +381,7 @@ impl<'s> Prepared<'s> {
                         plan::stages(scene, (housings, elements), assembly, request, choice)
                     }
                 };
-                let mut record = assembly::record(lists, planned, seconds)?;
+                let mut record = assembly::record(document, lists, planned, seconds);
                 record.ran.whole.add(Stage::IntegratorChoice, u64::from(choice.is_some()));
                 record.ran.solids = match method {
                     SolutionMethod::QuasiStaticSequence(bores, _) => {
@@ -388,20 +390,16 @@ impl<'s> Prepared<'s> {
                     SolutionMethod::Reduced(shapes) => shapes.ran.clone(),
                     SolutionMethod::Rigid | SolutionMethod::Explicit => Vec::new(),
                 };
-                // With a single bearing in a housing the motion is part of the scene.
-                if housings.is_empty() || scene.one().is_none() {
-                    let motion = assembly::echo::motion(scene)?;
-                    record.sections.push(("motion".into(), motion));
-                }
+                record.sections.push(("body_inertia".into(), inertia(assembly)?));
                 Ok(record)
             }
             Prepared::Solid { scene, mesh, .. } => {
                 let plan = solid::plan::items(scene, mesh, solid::plan::Of::Run);
-                solid::record(scene, plan, seconds)
+                Ok(solid::record(document, scene, plan, seconds))
             }
             Prepared::Rubber { scene, rubber, settings, mesh, .. } => {
                 let plan = rubber::plan::items(scene, rubber, mesh, Some(settings));
-                solid::record(scene, plan, seconds)
+                Ok(solid::record(document, scene, plan, seconds))
             }
         }
     }

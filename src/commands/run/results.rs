@@ -33,7 +33,7 @@ use bearing_dynamics::output::warnings::{Warning, lines, solid as of_solid};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::build::excitations::excitations;
 use bearing_dynamics::scene::resolve::solid_scene::LoadKind;
-use bearing_dynamics::scene::{Plot, RunPlot, Scene, SolidScene};
+use bearing_dynamics::scene::{Document, Plot, RunPlot, Scene, SolidScene};
 use bearing_dynamics::solids::condensation::CondensedBore;
 use serde_json::{Map, Value, json};
 use std::error::Error;
@@ -63,7 +63,7 @@ struct Extras {
 /// Writes all results, and returns what to print; the state has been saved before.
 pub(super) fn write_results(
     folder: &Path,
-    prepared: &Prepared,
+    (document, prepared): (&Document, &Prepared),
     session: &mut Session,
     (request, choice): (&RunRequest, Option<Choice>),
     stopped_by: Option<String>,
@@ -109,7 +109,7 @@ pub(super) fn write_results(
         ("plots".into(), start.elapsed().as_secs_f64()),
     ];
     stages.extend(prepared.seconds());
-    let mut record = prepared.record(request, choice.as_ref(), stages)?;
+    let mut record = prepared.record(document, request, choice.as_ref(), stages)?;
     record.sections.append(&mut extras.sections);
     record.ran.absorb(&session.ran());
     match &session.motion {

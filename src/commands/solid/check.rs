@@ -1,6 +1,6 @@
 //! `bearing check` of a solid: mesh, sets, supports and loads.
 
-use super::{echo, mesh_notes, prepare};
+use super::{mesh_notes, prepare};
 use crate::commands::check::{Line, print_json, print_lines};
 use crate::commands::check_mesh::{MeshFile, print_written};
 use crate::commands::{CommandResult, placed, rubber};
@@ -44,12 +44,8 @@ pub fn run(
     };
     let written = mesh.map(|file| file.write(&[(None, &facts.built.mesh)])).transpose()?;
     if json {
-        let mut echo = echo::scene(scene)?;
-        echo["mesh"] = mesh_section(&facts.built)?;
-        let drawn = [(scene.draw_series, "series"), (scene.draw_spectrum, "spectrum")];
-        let drawn: Vec<&str> = drawn.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
-        let output = json!({ "plots": drawn });
-        return print_json(echo, output, &scene.assumptions, &scene.defaults_used);
+        let echo = json!({ "mesh": mesh_section(&facts.built)? });
+        return print_json(document, echo, &scene.assumptions, &scene.defaults_used);
     }
     let lines = |line: &mut Line| facts.lines(line);
     print_lines(document, &scene.title, lines, &scene.assumptions, &scene.defaults_used)?;
@@ -142,7 +138,7 @@ fn of_rubber(
     );
     let mut law = vec![("rubber", text)];
     if let Some(asked) = &rubber.harmonic {
-        vibrating(&setup, asked).map_err(|error| placed(document, Some(error.about()), error))?;
+        vibrating(&setup, asked).map_err(|error| placed(document, error.about(), error))?;
         let count = asked.frequencies.len();
         law.push(("small vibrations", format!("{} at {count} frequencies", asked.set)));
     }

@@ -1,7 +1,6 @@
 //! Commands on a scene with a single solid, and the functions that they share.
 
 pub mod check;
-pub mod echo;
 pub mod modes;
 pub mod plan;
 pub mod statics;
@@ -10,7 +9,8 @@ use super::{placed, print};
 use bearing_dynamics::mesh::repair::Repaired;
 use bearing_dynamics::output::results::RunRecord;
 use bearing_dynamics::plan::Item;
-use bearing_dynamics::scene::build::solid::{SolidSetup, SolidSetupError, setup};
+use bearing_dynamics::scene::build::about::SetupError;
+use bearing_dynamics::scene::build::solid::{SolidSetup, setup};
 use bearing_dynamics::scene::build::solid_mesh::{BuiltMesh, build};
 use bearing_dynamics::scene::{Document, SolidScene};
 use bearing_dynamics::solids::support::{FreeMotions, free_motions};
@@ -36,12 +36,12 @@ pub fn prepare(document: &Document, scene: &SolidScene) -> Result<Prepared, Box<
 pub fn prepared<S>(
     document: &Document,
     scene: &SolidScene,
-    setup: impl FnOnce(&BuiltMesh) -> Result<S, SolidSetupError>,
+    setup: impl FnOnce(&BuiltMesh) -> Result<S, SetupError>,
     of: impl FnOnce(&S) -> (Vec<String>, FreeMotions),
 ) -> Result<Prepared<S>, Box<dyn Error>> {
     let start = Instant::now();
     let mut built = build(&scene.mesh).map_err(|error| placed(document, error.about(), error))?;
-    let setup = setup(&built).map_err(|error| placed(document, Some(error.about()), error))?;
+    let setup = setup(&built).map_err(|error| placed(document, error.about(), error))?;
     let (notes, free) = of(&setup);
     built.notes.extend(notes);
     Ok(Prepared { built, setup, free, mesh_seconds: start.elapsed().as_secs_f64() })
@@ -71,10 +71,11 @@ pub fn title(scene: &SolidScene) -> String {
 
 /// Scene, assumptions, defaults and plan for the summary.
 pub fn record(
+    document: &Document,
     scene: &SolidScene,
     plan: Vec<Item>,
     seconds: Vec<(String, f64)>,
-) -> Result<RunRecord, Box<dyn Error>> {
+) -> RunRecord {
     let (assumptions, defaults) = (&scene.assumptions, &scene.defaults_used);
-    Ok(super::record(echo::scene(scene)?, plan, assumptions, defaults, seconds))
+    super::record(document, plan, assumptions, defaults, seconds)
 }

@@ -42,7 +42,8 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
         ("mesh".into(), prepared.mesh_seconds),
         ("solve".into(), start.elapsed().as_secs_f64()),
     ];
-    let mut record = record(scene, plan::items(scene, &prepared, plan::Of::Modes), seconds)?;
+    let mut record =
+        record(asked.document, scene, plan::items(scene, &prepared, plan::Of::Modes), seconds);
     record.ran.solids = vec![found.ran];
     let (mut summary, series) = summary::modes(&model, built, &found, &record)?;
     let warnings = of_modes(&model, &found);

@@ -59,7 +59,8 @@ pub fn run(asked: &Asked, scene: &SolidScene) -> CommandResult {
         ("solve".into(), solve_seconds),
         ("stresses".into(), stress_seconds),
     ];
-    let mut record = record(scene, plan::items(scene, &prepared, plan::Of::Statics), seconds)?;
+    let mut record =
+        record(asked.document, scene, plan::items(scene, &prepared, plan::Of::Statics), seconds);
     record.ran.solids = vec![solution.ran];
     let (mut summary, series) =
         summary::statics(&model, setup, built, &solution, &stress, &record)?;

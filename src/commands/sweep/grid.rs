@@ -37,7 +37,7 @@ impl Grid {
             axes.push(document.axis(key.trim(), values.trim())?);
         }
         if vary.is_empty() {
-            axes = document.sweep().to_vec();
+            axes = document.sweep();
         }
         if axes.is_empty() {
             return Err(format!(

@@ -334,11 +334,12 @@ pub fn known_files(folder: &Path) -> Result<Vec<String>, CompareError> {
 }
 
 /// True for a channel that is not compared because of its name; see [`IGNORED_NAMES`], [`IGNORED_PREFIX`] and
-/// [`PROGRAM_NAME`].
+/// [`PROGRAM_NAME`]. Of the scene, which one may write in several ways, the title is compared.
 pub fn is_ignored_by_name(channel: &str) -> bool {
     let mut parts = channel.split('.').map(|part| part.trim_end_matches("[]"));
     parts.clone().any(|part| part.starts_with(IGNORED_PREFIX))
         || channel == PROGRAM_NAME
+        || (channel.starts_with("scene.") && channel != "scene.title")
         || parts.next_back().is_some_and(|last| IGNORED_NAMES.contains(&last))
 }
 

@@ -1,40 +1,24 @@
 //! What a scene of bearings can be asked for: its statics, and the parts whose elements move in a run.
 
+use crate::scene::build::about::SetupError;
 use crate::scene::build::assembly::{AssemblyScene, PlacedBearing};
 use crate::scene::resolve::resolved::CageMethod;
-use thiserror::Error;
-
-/// A scene without an equilibrium that `statics` could find.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoStatics {
-    #[error(
-        "housing{of}.friction: refused: an equilibrium with friction depends on how the race came to its position, and \
-          statics omits that. Hint: `bearing run` includes friction; leave `friction` out for an equilibrium of smooth bores"
-    )]
-    RoughBore {
-        /// ".left" for a named housing.
-        of: String,
-    },
-    #[error(
-        "spring.{name}.stiffness: refused: `yz` and `zy` differ, and an equilibrium of an energy has no circulatory force. \
-         Hint: `bearing modes` and `bearing run` include it"
-    )]
-    Circulatory { name: String },
-}
 
 impl AssemblyScene {
     /// Checks that no bore has friction, which an equilibrium cannot include.
     ///
     /// # Errors
     ///
-    /// [`NoStatics::RoughBore`], the first one.
-    pub fn check_smooth(&self) -> Result<(), NoStatics> {
+    /// The first bore with friction.
+    pub fn check_smooth(&self) -> Result<(), SetupError> {
         let rough = |placed: &&PlacedBearing| {
             placed.housing.as_ref().is_some_and(|of| of.settings.friction.is_some())
         };
         let Some(rough) = self.bearings.iter().find(rough) else { return Ok(()) };
         let of = rough.name.as_ref().map_or(String::new(), |name| format!(".{name}"));
-        Err(NoStatics::RoughBore { of })
+        let text = "refused: an equilibrium with friction depends on how the race came to its position, and statics omits \
+                    that. Hint: `bearing run` includes friction; leave `friction` out for an equilibrium of smooth bores";
+        Err(SetupError::key(&format!("housing{of}.friction"), text))
     }
 
     /// Checks for `statics`, whose equilibrium is that of an energy.
@@ -42,12 +26,13 @@ impl AssemblyScene {
     /// # Errors
     ///
     /// The first bore with friction; the first spring with a circulatory force.
-    pub fn check_statics(&self) -> Result<(), NoStatics> {
+    pub fn check_statics(&self) -> Result<(), SetupError> {
         self.check_smooth()?;
-        match self.springs.iter().find(|spring| spring.cross.parts()[1] != 0.0) {
-            Some(spring) => Err(NoStatics::Circulatory { name: spring.name.clone() }),
-            None => Ok(()),
-        }
+        let turns = self.springs.iter().find(|spring| spring.cross.parts()[1] != 0.0);
+        let Some(spring) = turns else { return Ok(()) };
+        let text = "refused: `yz` and `zy` differ, and an equilibrium of an energy has no circulatory force. Hint: `bearing \
+                    modes` and `bearing run` include it";
+        Err(SetupError::key(&format!("spring.{}.stiffness", spring.name), text))
     }
 
     /// Returns whether elements of rubber move in a run.

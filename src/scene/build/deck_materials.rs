@@ -2,7 +2,7 @@
 
 use crate::mesh::read::{DeckMaterial, LengthUnit};
 use crate::numeric::clock::to_digits;
-use crate::scene::build::solid::SolidSetupError;
+use crate::scene::build::about::SetupError;
 use crate::scene::build::solid_mesh::BuiltMesh;
 use crate::scene::resolve::solid_scene::{MeshSource, SolidScene};
 
@@ -12,7 +12,7 @@ pub(crate) fn deck_materials(
     scene: &SolidScene,
     elastic: [f64; 2],
     built: &BuiltMesh,
-) -> Result<Vec<String>, SolidSetupError> {
+) -> Result<Vec<String>, SetupError> {
     let defaulted = |key: &str| {
         scene.defaults_used.iter().any(|used| used.key == format!("solid.material.{key}"))
     };
@@ -30,10 +30,16 @@ pub(crate) fn deck_materials(
             let density = (no_density && law.starts_with("*DENSITY"), "density");
             let missing: Vec<_> =
                 names.into_iter().chain([density]).filter(|(no, _)| *no).collect();
-            let (name, law) = (material.name.clone(), law.to_string());
+            let name = &material.name;
             if !missing.is_empty() {
-                let missing = missing.into_iter().map(|(_, name)| name).collect();
-                return Err(SolidSetupError::DeckLaw { name, law, missing });
+                let missing: Vec<&str> = missing.into_iter().map(|(_, name)| name).collect();
+                let text = format!(
+                    "the mesh file has a material \"{name}\" with {law}, which this program does not read. The scene gives \
+                     no {}, so that steel would be used in its place. Hint: write the values you want in [solid]: material = \
+                     {{ youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7850 kg/m^3\" }} is steel",
+                    missing.join(" and no ")
+                );
+                return Err(SetupError::key("solid.material", text));
             }
             notes.push(format!("the scene's material is used, not the deck's \"{name}\" ({law})"));
             continue;
@@ -80,13 +86,15 @@ pub(crate) fn deck_materials(
                 .iter()
                 .map(|(_, of, _, name, text)| format!("{name} {}", text(*of)))
                 .collect();
-            let missing = missing.iter().map(|(_, _, _, name, _)| *name).collect();
-            return Err(SolidSetupError::DeckMaterial {
-                deck,
-                missing,
-                steel: steel.join(", "),
-                write,
-            });
+            let missing: Vec<&str> = missing.iter().map(|(_, _, _, name, _)| *name).collect();
+            let text = format!(
+                "the mesh file has a material ({deck}), which this program does not read. The scene gives no {}, so that \
+                 steel would be used in {} place: {}. Hint: {write}",
+                missing.join(" and no "),
+                if missing.len() == 1 { "its" } else { "their" },
+                steel.join(", ")
+            );
+            return Err(SetupError::key("solid.material", text));
         }
         let differing: Vec<_> = differing
             .map(|(of_deck, of, _, name, text)| {

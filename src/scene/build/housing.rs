@@ -4,12 +4,12 @@ use crate::ch2_housing::bore_contact::{ContactNode, Frame, Penalty, contact_node
 use crate::kinematics::Pose;
 use crate::mesh::cylinder_fit::fit_cylinder;
 use crate::numeric::profile::Profile;
+use crate::scene::build::about::{SetupError, list};
 use crate::scene::build::bore_shape::{
     BorePlace, Flat, LARGEST_OUT_OF_ROUND, MidSideNodes, ROUND, flat, middle_nodes,
 };
 use crate::scene::build::solid::{SolidSetup, setup as solid_setup};
 use crate::scene::build::solid_mesh::BuiltMesh;
-use crate::scene::housing_error::{HousingSetupError, Lies, SHARES};
 use crate::scene::resolve::housing_scene::{FitSize, HousedScene};
 use crate::scene::resolve::solid_scene::{LoadKind, SetLoad};
 use crate::solids::bore_equilibrium::Fit;
@@ -24,6 +24,24 @@ const FAR_OFF: f64 = 0.05;
 const LARGEST_FIT: f64 = 0.01;
 /// Out-of-roundness as a fraction of an interference below which pressures change by no more than that fraction.
 const SMALL: f64 = 0.01;
+
+/// Allowed ratio of the area represented by the contact nodes to the bore area under the race. In a longer
+/// bore, two rows of nodes at the race's edges and one between give 1.5, and 0.5 without those at the edges.
+const SHARES: std::ops::RangeInclusive<f64> = 0.6..=1.6;
+/// Hint for a mesh that is not at its bearing.
+const MOVE: &str = "solid.mesh.origin is the point, in the mesh's coordinates, that becomes the bearing's centre, solid.mesh.axis the \
+                    mesh's axis along the bore";
+
+/// Bounding box of a surface's nodes relative to the race's centre (m), for a message.
+fn extent(seen: &[[f64; 3]]) -> String {
+    let [x, y, z] = [0, 1, 2].map(|i| {
+        let along = || seen.iter().map(|place| 1e3 * place[i]);
+        let (low, high) =
+            (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
+        format!("{low:.4} to {high:.4}")
+    });
+    format!("relative to the bearing's centre it is at X {x}, Y {y}, Z {z} mm")
+}
 
 /// A housing ready for its bearing.
 #[derive(Clone, Debug)]
@@ -55,17 +73,25 @@ pub struct HousingSetup {
 /// # Errors
 ///
 /// A missing set, a bore that is not around the race, an invalid model.
-pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, HousingSetupError> {
+pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, SetupError> {
     let mesh = &built.mesh;
     let solid = solid_setup(&scene.solid, built)?;
     let bore = scene.housing.bore.clone();
-    let faces = mesh.surface_sets.get(&bore).ok_or_else(|| HousingSetupError::NoBore {
-        bore: bore.clone(),
-        known: mesh.surface_sets.keys().cloned().collect(),
+    let refused = |text: String| SetupError::key("housing.bore", text);
+    let too_narrow = |text: String| Err(SetupError::key("housing.width", text));
+    let known = list(&mesh.surface_sets.keys().cloned().collect::<Vec<_>>());
+    let faces = mesh.surface_sets.get(&bore).ok_or_else(|| {
+        refused(format!(
+            "the solid has no surface \"{bore}\"; its surfaces are: {known}. Hint: the bore of a ring is \"inner\""
+        ))
     })?;
-    if let Some(Flat { area, normal }) = flat(mesh, faces) {
-        let known = mesh.surface_sets.keys().cloned().collect();
-        return Err(HousingSetupError::FlatBore { bore, faces: faces.len(), area, normal, known });
+    if let Some(Flat { area, normal: [x, y, z] }) = flat(mesh, faces) {
+        return Err(refused(format!(
+            "\"{bore}\" is flat: all its {} faces, {:.4} mm^2, have the normal ({x:.3}, {y:.3}, {z:.3}). Name a cylinder \
+             about the race's axis; the solid's surfaces are: {known}",
+            faces.len(),
+            1e6 * area
+        )));
     }
     let nodes = contact_nodes(mesh, faces);
     let place = BorePlace::of(scene);
@@ -80,19 +106,32 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let distance = |[_, y, z]: &[f64; 3]| (y * y + z * z).sqrt();
     let distances: Vec<f64> = seen.iter().filter(|at| is_under(at)).map(distance).collect();
     if distances.is_empty() {
-        let centre = nominal.position.x;
-        let (count, lies) = (nodes.len(), Lies::of(&seen));
-        return Err(HousingSetupError::NoNodesUnderRace { count, width, centre, lies });
+        return too_narrow(format!(
+            "none of the {} nodes of the bore is under the outer race, which is {:.4} mm wide and centred at x = {:.4} mm: \
+             {}. Hint: {MOVE}; also check width, position and the mesh's unit",
+            nodes.len(),
+            1e3 * width,
+            1e3 * nominal.position.x,
+            extent(&seen)
+        ));
     }
     let corners = place.corner_cylinder(mesh, faces);
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     let farthest = distances.iter().copied().fold(0.0, f64::max);
     let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
     // Written so that NaN is refused.
+    let not_round = || {
+        refused(format!(
+            "nodes of \"{bore}\" are {:.4} to {:.4} mm from the bearing's axis (along X through its centre), which is not a \
+             bore about it; {}. Hint: {MOVE}; also check the name of the surface",
+            1e3 * nearest,
+            1e3 * farthest,
+            extent(&seen)
+        ))
+    };
     let round = farthest - nearest <= FAR_OFF * mean;
     if !round {
-        let lies = Lies::of(&seen);
-        return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
+        return Err(not_round());
     }
     // Straight edges would make a coarse bore seem too small.
     let size = corners.map_or(mean, |corners| corners.radius);
@@ -109,37 +148,75 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
         None => size > groove && size < 2.0 * groove,
     };
     if !near {
-        return Err(HousingSetupError::FarFromTheRace { bore, radius: size, race });
+        return Err(refused(format!(
+            "the bore has a radius of {:.4} mm, but the outer race about {:.4} mm. Allowed: a difference of 1 %. Hint: is the \
+             mesh's unit (solid.mesh.unit) mm or m? Is \"{bore}\" the right surface, and the race's outer_radius right?",
+            1e3 * size,
+            1e3 * race
+        )));
     }
     if let Some(corners) = corners {
         let middles = middle_nodes(mesh, faces, &corners);
         if middles.straight() {
-            let (radius, MidSideNodes { inside, sagitta, missing, .. }) = (corners.radius, middles);
-            return Err(HousingSetupError::StraightBore { bore, radius, inside, sagitta, missing });
+            let MidSideNodes { inside, sagitta, missing, .. } = middles;
+            let text = format!(
+                "housing.bore: the element edges of \"{bore}\" are straight: its mid-side nodes, which the race touches, are \
+                 up to {:.3} um inside the cylinder of radius {:.4} mm through the corner nodes. Curved edges would have an \
+                 arc height of {:.3} um, and {:.0} % of it is missing. Hint: mesh it with curved edges (in Gmsh \
+                 Mesh.SecondOrderLinear = 0, and Mesh.HighOrderOptimize = 0 if that straightened them), or save it with \
+                 first-order elements and write order = 2 in [solid.mesh]",
+                1e6 * inside,
+                1e3 * corners.radius,
+                1e6 * sagitta,
+                1e2 * missing
+            );
+            return Err(SetupError::of(Some("solid.mesh.file"), text));
         }
     }
     let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at));
     let under: Vec<Vector3<f64>> = under.map(|(node, _)| Vector3::from(node.place)).collect();
-    let Some(cylinder) = fit_cylinder(&under, place.axis()) else {
-        let lies = Lies::of(&seen);
-        return Err(HousingSetupError::NotRound { bore, nearest, farthest, lies });
-    };
+    let cylinder = fit_cylinder(&under, place.axis()).ok_or_else(not_round)?;
     let radius = cylinder.radius;
     let off = under.iter().map(|at| cylinder.outside(*at).abs()).fold(0.0, f64::max);
     let limit = LARGEST_OUT_OF_ROUND * radius;
     let round = off <= limit;
     if !round {
-        return Err(HousingSetupError::OutOfRound { bore, radius, off, limit });
+        return Err(refused(format!(
+            "nodes of \"{bore}\" are up to {:.3} um off its cylinder of radius {:.4} mm; allowed: {:.3} um, as for IT7. Hint: \
+             does the set contain faces outside the bore? Are coordinates written with all digits, and mid-side nodes on the \
+             curved surface?",
+            1e6 * off,
+            1e3 * radius,
+            1e6 * limit
+        )));
     }
     let off_centre = cylinder.outside(nominal.position) + radius;
     let share = share_of_seat(&nodes, &seen, width, ends[1] - ends[0]);
     let stands_for_it = SHARES.contains(&share);
     if !stands_for_it {
-        let beside = overhang(width, ends);
-        return Err(HousingSetupError::CoarseBore { width, share, beside });
+        let hint = match overhang(width, ends) {
+            Some(beside) => format!(": {beside}; or move the mesh: {MOVE}"),
+            None => {
+                ". Hint: refine the mesh along the axis, or place rows of nodes at the race's edges"
+                    .into()
+            }
+        };
+        return too_narrow(format!(
+            "contact nodes represent {share:.2} of the bore area under a race {:.4} mm wide; allowed: {} to {}{hint}",
+            1e3 * width,
+            SHARES.start(),
+            SHARES.end()
+        ));
     }
     if let Some(at) = one_row(&nodes, &seen, width) {
-        return Err(HousingSetupError::OneRow { count: distances.len(), width, at });
+        return too_narrow(format!(
+            "the {} nodes of the bore under the outer race, {:.4} mm wide, are in one row around it, {:+.4} mm from its \
+             middle, which cannot resist tilt; at least two rows are needed. Hint: refine the mesh along the axis (cells.axial \
+             of a generated mesh, or order = 2 in [solid.mesh]), or give a width that covers two rows",
+            distances.len(),
+            1e3 * width,
+            1e3 * at
+        ));
     }
     let interference = match scene.housing.fit {
         FitSize::Interference(interference) => interference,
@@ -151,7 +228,8 @@ pub fn setup(scene: &HousedScene, built: &BuiltMesh) -> Result<HousingSetup, Hou
     let under = nodes.iter().zip(&seen).filter(|(_, at)| is_under(at)).map(|(node, _)| node.node);
     notes.extend(fixed_nodes(&bore, under.collect(), &solid)?);
     notes.extend(rigid_rings(scene, radius, interference));
-    let model = SolidModel::labelled(solid.problem.clone(), solid.labels.clone())?;
+    let model = SolidModel::labelled(solid.problem.clone(), solid.labels.clone())
+        .map_err(|error| SetupError::of(None, error))?;
     Ok(HousingSetup {
         solid,
         model,
@@ -206,13 +284,17 @@ fn fixed_nodes(
     bore: &str,
     under: BTreeSet<u32>,
     solid: &SolidSetup,
-) -> Result<Option<String>, HousingSetupError> {
+) -> Result<Option<String>, SetupError> {
     let across = solid.problem.prescribed.iter().filter(|held| held.axis > 0);
     let held: BTreeSet<u32> =
         across.map(|held| held.node).filter(|node| under.contains(node)).collect();
     let count = under.len();
     if held.len() == count {
-        return Err(HousingSetupError::FixedBore { bore: bore.to_string(), count });
+        let text = format!(
+            "all {count} nodes of \"{bore}\" under the race are fixed by [[solid.fixed]], so the bore cannot deform. Hint: fix \
+             another set, or write method = \"rigid\" in [housing]"
+        );
+        return Err(SetupError::key("housing.bore", text));
     }
     Ok((!held.is_empty()).then(|| {
         format!(
@@ -323,15 +405,16 @@ impl HousingSetup {
 ///
 /// # Errors
 ///
-/// [`HousingSetupError::VaryingLoad`], [`HousingSetupError::PrescribedSupport`].
-pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
+/// A load that varies; a support with a prescribed displacement.
+pub fn check_constant(scene: &HousedScene) -> Result<(), SetupError> {
     let constant = |profile: &Profile| matches!(profile, Profile::Constant(_));
     let varies = |load: &SetLoad| match &load.kind {
         LoadKind::Pressure(profile) => !constant(profile),
         LoadKind::Force(axes) => !axes.iter().flatten().all(constant),
     };
     if let Some(index) = scene.solid.loads.iter().position(varies) {
-        return Err(HousingSetupError::VaryingLoad { index });
+        let text = "the housing method `quasi-static` needs constant loads; write method = \"explicit\" in [housing]";
+        return Err(SetupError::item("solid.load", index, "set", text));
     }
     check_supports(scene)
 }
@@ -340,12 +423,16 @@ pub fn check_constant(scene: &HousedScene) -> Result<(), HousingSetupError> {
 ///
 /// # Errors
 ///
-/// [`HousingSetupError::PrescribedSupport`].
-pub fn check_supports(scene: &HousedScene) -> Result<(), HousingSetupError> {
+/// A support with a prescribed displacement.
+pub fn check_supports(scene: &HousedScene) -> Result<(), SetupError> {
     for (index, held) in scene.solid.held.iter().enumerate() {
         for (axis, motion) in ["x", "y", "z"].into_iter().zip(&held.motion) {
             if motion.as_ref().is_some_and(|motion| !motion.is_zero()) {
-                return Err(HousingSetupError::PrescribedSupport { index, axis });
+                let text = format!(
+                    "the housing methods `quasi-static` and `reduced` need supports at zero; write {axis} = true, or method = \
+                     \"explicit\" in [housing]"
+                );
+                return Err(SetupError::item("solid.fixed", index, axis, text));
             }
         }
     }

@@ -3,8 +3,10 @@
 use crate::elements::tet10::{shape_functions, stiffness_rule};
 use crate::mesh::{Elements, TetMesh};
 use crate::numeric::profile::Profile;
-use crate::scene::build::solid::{NamedNodes, Outside, SolidSetupError, Support, outside};
+use crate::scene::build::about::{SetupError, list};
+use crate::scene::build::solid::{NamedNodes, Outside, Support, outside};
 use crate::scene::build::solid_mesh::BuiltMesh;
+use crate::scene::resolve::rubber::FOUR_NODES_LOCK;
 use crate::scene::resolve::solid_scene::{Harmonic, Held, MeshSource, RubberScene, SolidScene};
 use crate::solids::labels::Labels;
 use crate::solids::model::{Load, Prescribed};
@@ -32,10 +34,13 @@ pub fn rubber_setup(
     scene: &SolidScene,
     rubber: &RubberScene,
     built: &BuiltMesh,
-) -> Result<RubberSetup, SolidSetupError> {
+) -> Result<RubberSetup, SetupError> {
     let mesh = &built.mesh;
     let Elements::Quadratic(elements) = mesh.elements.clone() else {
-        return Err(SolidSetupError::FourNodes);
+        let text = format!(
+            "the mesh has four-node elements; {FOUR_NODES_LOCK}. Write `order = 2` in [solid.mesh]"
+        );
+        return Err(SetupError::key("solid.mesh.file", text));
     };
     let Outside { prescribed, supports, loads, probes, mut notes } = outside(scene, built)?;
     if let Some(deck) = built.materials.first() {
@@ -45,8 +50,9 @@ pub fn rubber_setup(
     notes.extend(sliding_sleeves(scene));
     keeps_between_sleeves(scene)?;
     let (nodes, material) = (mesh.nodes.clone(), rubber.material.clone());
+    let problem = RubberProblem { nodes, elements, material, prescribed, loads };
     let mut model =
-        RubberModel::new(RubberProblem { nodes, elements, material, prescribed, loads })?;
+        RubberModel::new(problem).map_err(|error| SetupError::of(Some("solid"), error))?;
     if scene.gravity != [0.0; 3] {
         model.problem.loads.push(weight(&model, scene.density, scene.gravity));
     }
@@ -85,7 +91,7 @@ fn sliding_sleeves(scene: &SolidScene) -> Vec<String> {
 const SAMPLES: usize = 200;
 
 /// Checks that the sleeves of a generated bushing stay apart across its wall.
-fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
+fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SetupError> {
     let MeshSource::Bushing(body, _) = &scene.mesh.source else { return Ok(()) };
     let wall = body.thickness;
     let end = scene.run.as_ref().map_or(0.0, |run| run.end);
@@ -109,7 +115,13 @@ fn keeps_between_sleeves(scene: &SolidScene) -> Result<(), SolidSetupError> {
             let mut held = (0..).zip(&scene.held);
             let own = held.find(|(_, held)| held.set == "inner" && held.motion[axis].is_some());
             let (index, axis) = (own.map_or(0, |(index, _)| index), ["x", "y", "z"][axis]);
-            return Err(SolidSetupError::ThroughSleeve { index, axis, across: far, wall, time });
+            let text = format!(
+                "the inner sleeve moves {:.4} mm across at t = {time} s, relative to the outer one, and the rubber between \
+                 them is {:.4} mm thick: sleeves would pass through each other. Hint: prescribe less, and check the unit",
+                1e3 * far,
+                1e3 * wall
+            );
+            return Err(SetupError::item("solid.fixed", index, axis, text));
         }
     }
     Ok(())
@@ -121,7 +133,7 @@ fn moves_as_a_whole(
     scene: &SolidScene,
     mesh: &TetMesh,
     asked: &Harmonic,
-) -> Result<(), SolidSetupError> {
+) -> Result<(), SetupError> {
     let holds = |held: &&Held| held.motion[asked.axis].is_some();
     if !scene.held.iter().filter(holds).any(|held| held.set == asked.set) {
         // Reported where its stiffness is requested.
@@ -133,8 +145,13 @@ fn moves_as_a_whole(
         held.set != asked.set && nodes(&held.set).iter().any(|node| own.contains(node))
     };
     scene.held.iter().filter(holds).find(shares).map_or(Ok(()), |held| {
-        let (set, other) = (asked.set.clone(), held.set.clone());
-        Err(SolidSetupError::VibratesTwoWays { set, other, axis: ["x", "y", "z"][asked.axis] })
+        let (set, other, axis) = (&asked.set, &held.set, ["x", "y", "z"][asked.axis]);
+        let text = format!(
+            "some nodes of \"{set}\" also belong to \"{other}\", which fixes them along {axis}, so that \"{set}\" cannot \
+             move along {axis} as a whole. Hint: a plane of symmetry allows motion within the plane only; mesh the whole \
+             body for motion normal to it"
+        );
+        Err(SetupError::key("solid.harmonic.axis", text))
     })
 }
 
@@ -157,8 +174,7 @@ fn weight(model: &RubberModel, density: f64, gravity: [f64; 3]) -> Load {
 /// # Errors
 ///
 /// A set that is not a support along that axis, or without another support.
-pub fn vibrating(setup: &RubberSetup, asked: &Harmonic) -> Result<RubberModel, SolidSetupError> {
-    let known = || setup.supports.iter().map(|support| support.name.clone()).collect();
+pub fn vibrating(setup: &RubberSetup, asked: &Harmonic) -> Result<RubberModel, SetupError> {
     let support = setup.supports.iter().find(|support| support.name == asked.set);
     let moved = support.map_or(&[][..], |support| support.components.as_slice());
     let moves = |node: u32, axis: usize| axis == asked.axis && moved.contains(&(node, axis));
@@ -170,14 +186,25 @@ pub fn vibrating(setup: &RubberSetup, asked: &Harmonic) -> Result<RubberModel, S
         any |= is_moved;
         *profile = if is_moved { Profile::Constant(1.0) } else { Profile::ZERO };
     }
-    let (set, axis) = (asked.set.clone(), ["x", "y", "z"][asked.axis]);
+    let (set, axis) = (&asked.set, ["x", "y", "z"][asked.axis]);
     if !any {
-        return Err(SolidSetupError::NotHeld { set, axis, known: known() });
+        let known: Vec<String> =
+            setup.supports.iter().map(|support| support.name.clone()).collect();
+        let text = format!(
+            "\"{set}\" is not fixed along {axis}; a stiffness can be computed only for a set in [[solid.fixed]], which \
+             has: {}",
+            list(&known)
+        );
+        return Err(SetupError::key("solid.harmonic.set", text));
     }
     let mut others = setup.supports.iter().filter(|support| support.name != asked.set);
     let holds = |support: &Support| support.components.iter().any(|(_, of)| *of == asked.axis);
     if !others.any(holds) {
-        return Err(SolidSetupError::VibratesFreely { set, axis });
+        let text = format!(
+            "no set but \"{set}\" is fixed along {axis}, so that nothing resists its motion. Hint: fix another set, or \
+             choose another axis"
+        );
+        return Err(SetupError::key("solid.harmonic.axis", text));
     }
     Ok(model)
 }

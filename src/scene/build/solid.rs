@@ -1,149 +1,19 @@
 //! From a scene and its mesh to the inputs of the solver: sets become nodes, loads become forces.
 
-use crate::ch2_housing::linear_elastic::{ElasticError, LinearElastic};
+use crate::ch2_housing::linear_elastic::LinearElastic;
 use crate::kinematics::vec3::Vec3;
 use crate::mesh::measure::{Share, tributary_areas};
 use crate::mesh::vector_area::vector_areas;
 use crate::mesh::{Face, TetMesh};
 use crate::numeric::profile::Profile;
-use crate::scene::build::about::About;
+use crate::scene::build::about::{SetupError, list};
 use crate::scene::build::deck_materials::deck_materials;
 use crate::scene::build::solid_mesh::BuiltMesh;
-use crate::scene::resolve::rubber::FOUR_NODES_LOCK;
 use crate::scene::resolve::solid_scene::{Law, LoadKind, ProbeOf, SolidScene};
-use crate::solids::error::SolidError;
 use crate::solids::labels::Labels;
 use crate::solids::model::{Load, Prescribed, SolidProblem};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
-use thiserror::Error;
-
-/// Contradictions of a scene and its mesh; `index` counts the tables of a list from 0.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum SolidSetupError {
-    #[error(transparent)]
-    Material(#[from] ElasticError),
-    #[error(transparent)]
-    Solid(#[from] SolidError),
-    #[error("solid.material.law: this command supports linear elastic solids only")]
-    OtherLaw,
-    #[error(
-        "solid.mesh.file: the mesh has four-node elements; {FOUR_NODES_LOCK}. Write `order = 2` in [solid.mesh]"
-    )]
-    FourNodes,
-    #[error(
-        "solid.harmonic.set: \"{set}\" is not fixed along {axis}; a stiffness can be computed only for a set \
-         in [[solid.fixed]], which has: {}",
-        list(known)
-    )]
-    NotHeld { set: String, axis: &'static str, known: Vec<String> },
-    #[error(
-        "solid.harmonic.axis: some nodes of \"{set}\" also belong to \"{other}\", which fixes them along {axis}, so that \
-         \"{set}\" cannot move along {axis} as a whole. Hint: a plane of symmetry allows motion within the plane only; \
-         mesh the whole body for motion normal to it"
-    )]
-    VibratesTwoWays { set: String, other: String, axis: &'static str },
-    #[error(
-        "solid.harmonic.axis: no set but \"{set}\" is fixed along {axis}, so that nothing resists its motion. \
-         Hint: fix another set, or choose another axis"
-    )]
-    VibratesFreely { set: String, axis: &'static str },
-    #[error(
-        "solid.material: the mesh file has a material ({deck}), which this program does not read. The scene \
-         gives no {}, so that steel would be used in {} place: {steel}. Hint: {write}",
-        missing.join(" and no "), if missing.len() == 1 { "its" } else { "their" }
-    )]
-    DeckMaterial { deck: String, missing: Vec<&'static str>, steel: String, write: String },
-    #[error(
-        "solid.material: the mesh file has a material \"{name}\" with {law}, which this program does not read. The scene \
-         gives no {}, so that steel would be used in its place. Hint: write the values you want in [solid]: material = \
-         {{ youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7850 kg/m^3\" }} is steel",
-        missing.join(" and no ")
-    )]
-    DeckLaw { name: String, law: String, missing: Vec<&'static str> },
-    #[error("{part}.set: no set is called \"{set}\"; there are: {}", list(known))]
-    NoSuchSet { part: &'static str, index: usize, set: String, known: Vec<String> },
-    #[error("{part}.set: set \"{set}\" has no nodes")]
-    EmptySet { part: &'static str, index: usize, set: String },
-    #[error(
-        "solid.load.set: pressure needs a surface, and \"{set}\" is a set of nodes or elements; the \
-         surfaces are: {}",
-        list(known)
-    )]
-    NoSurface { index: usize, set: String, known: Vec<String> },
-    #[error(
-        "solid.fixed.{axis}: sets \"{first}\" and \"{second}\" move the same node ({}) along {axis} in \
-         different ways",
-        place(at)
-    )]
-    HeldTwice { index: usize, first: String, second: String, axis: &'static str, at: Vec3 },
-    #[error(
-        "solid.load.set: set \"{set}\" is fixed along {along} where it is loaded: the support carries all of the \
-          load, and the body none. Load another set, or leave that axis out of [[solid.fixed]]"
-    )]
-    LoadOnSupport { index: usize, set: String, along: String },
-    #[error(
-         "solid.probe.at: the nearest node is {:.4} mm away ({}), farther than the longest edge of the \
-         mesh, {:.4} mm: the place is outside the body. Hint: check the place, its unit and the mesh's; or \
-         give the probe a `set`",
-        1e3 * *.distance, place(nearest), 1e3 * *.edge
-    )]
-    FarProbe { index: usize, distance: f64, nearest: Vec3, edge: f64 },
-    #[error(
-        "solid.probe.name: a name of {length} letters is too long for a file name, which takes \
-         {LONGEST_NAME}; give the probe a shorter `name`"
-    )]
-    LongName { index: usize, length: usize },
-    #[error(
-         "solid.fixed.{axis}: the inner sleeve moves {:.4} mm across at t = {time} s, relative to the outer one, and the rubber \
-          between them is {:.4} mm thick: sleeves would pass through each other. Hint: prescribe less, and check the unit",
-        1e3 * *.across, 1e3 * *.wall
-    )]
-    ThroughSleeve { index: usize, axis: &'static str, across: f64, wall: f64, time: f64 },
-    #[error("solid.probe.name: two probes are called \"{name}\"; give one of them another `name`")]
-    ProbeTwice { index: usize, name: String },
-}
-
-impl SolidSetupError {
-    pub fn about(&self) -> About {
-        match *self {
-            SolidSetupError::Material(_)
-            | SolidSetupError::DeckMaterial { .. }
-            | SolidSetupError::DeckLaw { .. } => About::key("solid.material"),
-            SolidSetupError::OtherLaw => About::key("solid.material.law"),
-            SolidSetupError::Solid(_) => About::key("solid"),
-            SolidSetupError::FourNodes => About::key("solid.mesh.file"),
-            SolidSetupError::NotHeld { .. } => About::key("solid.harmonic.set"),
-            SolidSetupError::VibratesTwoWays { .. } | SolidSetupError::VibratesFreely { .. } => {
-                About::key("solid.harmonic.axis")
-            }
-            SolidSetupError::NoSuchSet { part: table, index, .. }
-            | SolidSetupError::EmptySet { part: table, index, .. } => {
-                About::Item { table, index, key: "set" }
-            }
-            SolidSetupError::NoSurface { index, .. } => {
-                About::Item { table: "solid.load", index, key: "set" }
-            }
-            SolidSetupError::HeldTwice { index, axis: key, .. }
-            | SolidSetupError::ThroughSleeve { index, axis: key, .. } => {
-                About::Item { table: "solid.fixed", index, key }
-            }
-            SolidSetupError::LoadOnSupport { index, .. } => {
-                About::Item { table: "solid.load", index, key: "set" }
-            }
-            SolidSetupError::FarProbe { index, .. } => {
-                About::Item { table: "solid.probe", index, key: "at" }
-            }
-            SolidSetupError::ProbeTwice { index, .. } | SolidSetupError::LongName { index, .. } => {
-                About::Item { table: "solid.probe", index, key: "name" }
-            }
-        }
-    }
-}
-
-fn list(names: &[String]) -> String {
-    if names.is_empty() { "none".to_string() } else { names.join(", ") }
-}
 
 fn place(at: &Vec3) -> String {
     format!("at {:.6}, {:.6}, {:.6} m", at[0], at[1], at[2])
@@ -217,7 +87,7 @@ pub struct Outside {
 /// # Errors
 ///
 /// A set that is missing or does not fit its use; supports that contradict each other.
-pub fn outside(scene: &SolidScene, built: &BuiltMesh) -> Result<Outside, SolidSetupError> {
+pub fn outside(scene: &SolidScene, built: &BuiltMesh) -> Result<Outside, SetupError> {
     let mesh = &built.mesh;
     let (prescribed, supports) = supports(scene, mesh)?;
     let (mut notes, mut loads) = (Vec::new(), Vec::new());
@@ -233,12 +103,14 @@ pub fn outside(scene: &SolidScene, built: &BuiltMesh) -> Result<Outside, SolidSe
 /// # Errors
 ///
 /// Those of [`outside`]; an invalid material, or one that contradicts a deck.
-pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SolidSetupError> {
+pub fn setup(scene: &SolidScene, built: &BuiltMesh) -> Result<SolidSetup, SetupError> {
     let mesh = &built.mesh;
     let Law::LinearElastic { youngs_modulus, poisson_ratio } = scene.law else {
-        return Err(SolidSetupError::OtherLaw);
+        let text = "this command supports linear elastic solids only";
+        return Err(SetupError::key("solid.material.law", text));
     };
-    let material = LinearElastic::new(youngs_modulus, poisson_ratio)?;
+    let material = LinearElastic::new(youngs_modulus, poisson_ratio)
+        .map_err(|error| SetupError::of(Some("solid.material"), error))?;
     let mut notes = deck_materials(scene, [youngs_modulus, poisson_ratio], built)?;
     let Outside { prescribed, supports, loads, probes, notes: of_sets } = outside(scene, built)?;
     notes.extend(of_sets);
@@ -272,7 +144,7 @@ fn nodes_of_set(
     set: &str,
     part: &'static str,
     index: usize,
-) -> Result<Vec<u32>, SolidSetupError> {
+) -> Result<Vec<u32>, SetupError> {
     let nodes = if let Some(nodes) = mesh.node_sets.get(set) {
         nodes.clone()
     } else if let Some(faces) = mesh.surface_sets.get(set) {
@@ -281,19 +153,23 @@ fn nodes_of_set(
         let nodes = elements.iter().flat_map(|&element| mesh.elements.nodes(element as usize));
         nodes.copied().collect::<BTreeSet<_>>().into_iter().collect()
     } else {
-        let (set, known) = (set.to_string(), set_names(mesh));
-        return Err(SolidSetupError::NoSuchSet { part, index, set, known });
+        return Err(no_such_set(part, index, set, &set_names(mesh)));
     };
     match nodes.is_empty() {
-        true => Err(SolidSetupError::EmptySet { part, index, set: set.to_string() }),
+        true => Err(SetupError::item(part, index, "set", format!("set \"{set}\" has no nodes"))),
         false => Ok(nodes),
     }
+}
+
+fn no_such_set(part: &'static str, index: usize, set: &str, known: &[String]) -> SetupError {
+    let text = format!("no set is called \"{set}\"; there are: {}", list(known));
+    SetupError::item(part, index, "set", text)
 }
 
 type Supports = (Vec<Prescribed>, Vec<Support>);
 
 /// Fixed components. Two sets may fix one node if their motions are equal.
-fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupError> {
+fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SetupError> {
     let mut owner: BTreeMap<(u32, usize), (&str, &Profile)> = BTreeMap::new();
     let mut named: Vec<Support> = Vec::new();
     for (index, held) in scene.held.iter().enumerate() {
@@ -309,13 +185,13 @@ fn supports(scene: &SolidScene, mesh: &TetMesh) -> Result<Supports, SolidSetupEr
                     }
                     Entry::Occupied(taken) if taken.get().1 == profile => {}
                     Entry::Occupied(taken) => {
-                        return Err(SolidSetupError::HeldTwice {
-                            index,
-                            first: taken.get().0.to_string(),
-                            second: held.set.clone(),
-                            axis: AXES[axis],
-                            at: mesh.nodes[node as usize],
-                        });
+                        let (axis, at) = (AXES[axis], place(&mesh.nodes[node as usize]));
+                        let text = format!(
+                            "sets \"{}\" and \"{}\" move the same node ({at}) along {axis} in different ways",
+                            taken.get().0,
+                            held.set
+                        );
+                        return Err(SetupError::item("solid.fixed", index, axis, text));
                     }
                 }
             }
@@ -340,17 +216,19 @@ fn set_loads(
     index: usize,
     set: &str,
     kind: &LoadKind,
-) -> Result<Vec<Load>, SolidSetupError> {
+) -> Result<Vec<Load>, SetupError> {
     match kind {
         LoadKind::Pressure(profile) => {
             let faces = mesh.surface_sets.get(set).ok_or_else(|| {
-                let known = mesh.surface_sets.keys().cloned().collect();
-                if set_names(mesh).iter().any(|name| name == set) {
-                    SolidSetupError::NoSurface { index, set: set.to_string(), known }
-                } else {
-                    let (part, set) = ("solid.load", set.to_string());
-                    SolidSetupError::NoSuchSet { part, index, set, known }
+                let known: Vec<String> = mesh.surface_sets.keys().cloned().collect();
+                if !set_names(mesh).iter().any(|name| name == set) {
+                    return no_such_set("solid.load", index, set, &known);
                 }
+                let text = format!(
+                    "pressure needs a surface, and \"{set}\" is a set of nodes or elements; the surfaces are: {}",
+                    list(&known)
+                );
+                SetupError::item("solid.load", index, "set", text)
             })?;
             let areas = vector_areas(mesh, faces);
             let forces = (0..).zip(areas).filter(|(_, area)| *area != [0.0; 3]);
@@ -375,7 +253,7 @@ fn set_loads(
 }
 
 /// Fraction of a force on each node of a set; the sum is one.
-fn shares(mesh: &TetMesh, index: usize, set: &str) -> Result<Vec<(u32, f64)>, SolidSetupError> {
+fn shares(mesh: &TetMesh, index: usize, set: &str) -> Result<Vec<(u32, f64)>, SetupError> {
     let faces: &[Face] = mesh.surface_sets.get(set).map_or(&[], Vec::as_slice);
     if faces.is_empty() {
         let nodes = nodes_of_set(mesh, set, "solid.load", index)?;
@@ -394,7 +272,7 @@ fn on_supports(
     set: &str,
     loads: &[Load],
     prescribed: &[Prescribed],
-) -> Result<Option<String>, SolidSetupError> {
+) -> Result<Option<String>, SetupError> {
     let held: BTreeSet<(u32, usize)> = prescribed.iter().map(|p| (p.node, p.axis)).collect();
     let (mut all, mut taken) = ([0.0; 3], [0.0; 3]);
     for load in loads.iter().filter(|load| !load.profile.is_zero()) {
@@ -413,7 +291,11 @@ fn on_supports(
     let along = along.join(" and ");
     // Rounding of sums of shares.
     if sum > 0.0 && on_held >= (1.0 - 1e-9) * sum {
-        return Err(SolidSetupError::LoadOnSupport { index, set: set.to_string(), along });
+        let text = format!(
+            "set \"{set}\" is fixed along {along} where it is loaded: the support carries all of the load, and the body \
+             none. Load another set, or leave that axis out of [[solid.fixed]]"
+        );
+        return Err(SetupError::item("solid.load", index, "set", text));
     }
     let part = 100.0 * on_held / sum;
     Ok((on_held > WORTH_A_WORD * sum).then(|| {
@@ -430,7 +312,7 @@ fn probes(
     mesh: &TetMesh,
     edge: f64,
     notes: &mut Vec<String>,
-) -> Result<Vec<NamedNodes>, SolidSetupError> {
+) -> Result<Vec<NamedNodes>, SetupError> {
     let mut probes: Vec<NamedNodes> = Vec::new();
     for (index, probe) in scene.probes.iter().enumerate() {
         let nodes = match &probe.of {
@@ -443,8 +325,14 @@ fn probes(
                 let distance = off(nearest).sqrt();
                 let near = distance <= edge;
                 if !near {
-                    let nearest = *nearest;
-                    return Err(SolidSetupError::FarProbe { index, distance, nearest, edge });
+                    let text = format!(
+                        "the nearest node is {:.4} mm away ({}), farther than the longest edge of the mesh, {:.4} mm: the \
+                         place is outside the body. Hint: check the place, its unit and the mesh's; or give the probe a `set`",
+                        1e3 * distance,
+                        place(nearest),
+                        1e3 * edge
+                    );
+                    return Err(SetupError::item("solid.probe", index, "at", text));
                 }
                 if distance > ON_A_NODE * edge {
                     notes.push(format!(
@@ -458,11 +346,17 @@ fn probes(
             }
         };
         let name = column_name(&probe.name);
+        let refused = |text: String| Err(SetupError::item("solid.probe", index, "name", text));
         if name.len() > LONGEST_NAME {
-            return Err(SolidSetupError::LongName { index, length: name.len() });
+            return refused(format!(
+                "a name of {} letters is too long for a file name, which takes {LONGEST_NAME}; give the probe a shorter `name`",
+                name.len()
+            ));
         }
         if probes.iter().any(|other| other.name == name) {
-            return Err(SolidSetupError::ProbeTwice { index, name });
+            return refused(format!(
+                "two probes are called \"{name}\"; give one of them another `name`"
+            ));
         }
         probes.push(NamedNodes { name, nodes });
     }

@@ -5,12 +5,12 @@ use crate::mesh::generate::{Solid, bar, bushing, contact_block, ring, shaft};
 use crate::mesh::numbering::reverse_cuthill_mckee;
 use crate::mesh::quadratic::elevate;
 use crate::mesh::quality::{Quality, quality};
-use crate::mesh::read::{DeckMaterial, ReadError, read_abaqus, read_gmsh};
+use crate::mesh::read::{DeckMaterial, read_abaqus, read_gmsh};
 use crate::mesh::repair::{Repair, Repaired, repair};
 use crate::mesh::select::Region;
 use crate::mesh::topology::surface;
 use crate::mesh::{MeshError, Order, TetMesh};
-use crate::scene::build::about::About;
+use crate::scene::build::about::SetupError;
 use crate::scene::build::bore_shape::{BorePlace, elevate_with_bore};
 use crate::scene::resolve::housing_scene::HousedScene;
 use crate::scene::resolve::solid_mesh::{extension, key_of_dimension};
@@ -18,8 +18,8 @@ use crate::scene::resolve::solid_scene::{MeshRequest, MeshSource, SetPlace};
 use crate::scene::text::input_file;
 use crate::scene::text::input_file::{InputError, LARGEST_DATA};
 use crate::solids::labels::Labels;
-use std::path::{Path, PathBuf};
-use thiserror::Error;
+use std::fmt::Display;
+use std::path::Path;
 
 /// A valid mesh, and its origin.
 #[derive(Clone, Debug)]
@@ -35,65 +35,6 @@ pub struct BuiltMesh {
     pub notes: Vec<String>,
     /// Materials of an input deck, for comparison with the scene's.
     pub materials: Vec<DeckMaterial>,
-}
-
-#[derive(Debug, Error)]
-pub enum SolidMeshError {
-    #[error("solid.mesh.file: cannot read {}: {source}{}", path.display(), where_it_is(path, source))]
-    File { path: PathBuf, source: InputError },
-    #[error("{}: {source}", path.display())]
-    Read { path: PathBuf, source: ReadError },
-    #[error("{}: {faults}", path.display())]
-    Faults { path: PathBuf, faults: Faults },
-    #[error("{}: {source}", path.display())]
-    Mesh { path: PathBuf, source: MeshError },
-    #[error(
-        "{}: no node of set \"{name}\", which the scene uses, belongs to an element; name a set on the body",
-        path.display()
-    )]
-    EmptiedSet { path: PathBuf, name: String },
-    #[error("{key}: {source}")]
-    Made { key: String, source: MeshError },
-    #[error(
-        "solid.mesh: these dimensions and cells do not make a valid mesh, change them: {faults}"
-    )]
-    MadeFaults { faults: Faults },
-    #[error(
-         "solid.mesh.order: {} has ten-node elements, which are not converted to four-node ones; leave \
-         `order` out, or save the mesh with elements of first order",
-        path.display()
-    )]
-    Order { path: PathBuf },
-    #[error(
-        "solid.set.name: the mesh, or an earlier [[solid.set]], already has a set called \"{name}\""
-    )]
-    SetTwice { index: usize, name: String },
-    #[error(
-        "solid.mesh.cells: {cells:.1e} cells, more than the limit of {MOST_CELLS:.0e}; take fewer"
-    )]
-    TooFine { cells: f64 },
-    #[error("solid.set: {source}")]
-    Set { index: usize, source: MeshError },
-}
-
-impl SolidMeshError {
-    /// Part of the scene with the error; `None` for a fault inside a mesh file.
-    pub fn about(&self) -> Option<About> {
-        Some(match self {
-            SolidMeshError::Read { .. }
-            | SolidMeshError::Faults { .. }
-            | SolidMeshError::EmptiedSet { .. }
-            | SolidMeshError::Mesh { .. } => return None,
-            SolidMeshError::File { .. } => About::key("solid.mesh.file"),
-            SolidMeshError::Made { key, .. } => About::key(key),
-            SolidMeshError::MadeFaults { .. } => About::key("solid.mesh"),
-            SolidMeshError::Order { .. } => About::key("solid.mesh.order"),
-            SolidMeshError::TooFine { .. } => About::key("solid.mesh.cells"),
-            SolidMeshError::SetTwice { index, .. } | SolidMeshError::Set { index, .. } => {
-                About::Item { table: "solid.set", index: *index, key: "name" }
-            }
-        })
-    }
 }
 
 /// Advice for a missing file.
@@ -122,7 +63,7 @@ const QUARTER: &str = "the mesh is a quarter of the bushing: forces, stiffness a
 /// # Errors
 ///
 /// A file that cannot be read, a mesh with a fault without a requested repair, invalid dimensions, an empty set.
-pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
+pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SetupError> {
     build_around(request, None)
 }
 
@@ -131,14 +72,11 @@ pub fn build(request: &MeshRequest) -> Result<BuiltMesh, SolidMeshError> {
 /// # Errors
 ///
 /// Those of [`build`].
-pub fn build_housing(scene: &HousedScene) -> Result<BuiltMesh, SolidMeshError> {
+pub fn build_housing(scene: &HousedScene) -> Result<BuiltMesh, SetupError> {
     build_around(&scene.solid.mesh, Some(&BorePlace::of(scene)))
 }
 
-fn build_around(
-    request: &MeshRequest,
-    bore: Option<&BorePlace>,
-) -> Result<BuiltMesh, SolidMeshError> {
+fn build_around(request: &MeshRequest, bore: Option<&BorePlace>) -> Result<BuiltMesh, SetupError> {
     let (mut notes, mut materials) = (Vec::new(), Vec::new());
     let mut repaired = Repaired::default();
     let mut labels = Labels::default();
@@ -146,16 +84,18 @@ fn build_around(
         Limits { aspect: request.largest_aspect, cavities: request.cavities, ..Limits::default() };
     let (mesh, moved_back) = match &request.source {
         MeshSource::File { path, unit, .. } => {
-            let bytes = input_file::read(path, LARGEST_DATA)
-                .map_err(|source| SolidMeshError::File { path: path.clone(), source })?;
+            let bytes = input_file::read(path, LARGEST_DATA).map_err(|error| {
+                let where_it_is = where_it_is(path, &error);
+                let text = format!("cannot read {}: {error}{where_it_is}", path.display());
+                SetupError::key("solid.mesh.file", text)
+            })?;
             let loaded = match extension(&path.to_string_lossy()).as_str() {
                 "inp" => read_abaqus(&bytes, *unit),
                 _ => read_gmsh(&bytes, *unit),
             };
-            let read = |source| SolidMeshError::Read { path: path.clone(), source };
-            let mut loaded = loaded.map_err(read)?;
+            let mut loaded = loaded.map_err(|error| in_file(path, error))?;
             let used = used_sets(request, bore);
-            loaded.use_sets(&used).map_err(read)?;
+            loaded.use_sets(&used).map_err(|error| in_file(path, error))?;
             request.place.put(&mut loaded.mesh.nodes);
             notes.extend(loaded.notes.iter().map(ToString::to_string));
             materials = loaded.materials;
@@ -168,14 +108,11 @@ fn build_around(
             let places = loaded.mesh.nodes.clone();
             labels.elements = loaded.numbers.elements;
             let (mut mesh, done) = repair(loaded.mesh, &wanted)
-                .map_err(|error| in_mesh(path, named_in_file(error, &labels)))?;
+                .map_err(|error| in_file(path, named_in_file(error, &labels)))?;
             notes.extend(without_emptied_sets(&mut mesh, &used, path)?);
             repaired = done;
             labels.nodes = labels_of_nodes(&mesh, &places, &loaded.numbers.nodes);
-            check(&mesh, &limits).map_err(|faults| {
-                let faults = named(faults, &labels);
-                SolidMeshError::Faults { path: path.clone(), faults }
-            })?;
+            check(&mesh, &limits).map_err(|faults| in_file(path, named(faults, &labels)))?;
             let (mesh, moved_back, bent) = from_file(mesh, request, bore, path)?;
             notes.extend(bent);
             // Mid-side nodes come last, and the file has none of them.
@@ -185,7 +122,10 @@ fn build_around(
         made => {
             let cells = cells(made);
             if cells > MOST_CELLS {
-                return Err(SolidMeshError::TooFine { cells });
+                let text = format!(
+                    "{cells:.1e} cells, more than the limit of {MOST_CELLS:.0e}; take fewer"
+                );
+                return Err(SetupError::key("solid.mesh.cells", text));
             }
             let failed = |source: MeshError| {
                 let dimension = match &source {
@@ -193,7 +133,7 @@ fn build_around(
                     _ => None,
                 };
                 let key = format!("solid.mesh.{}", dimension.unwrap_or("generate"));
-                SolidMeshError::Made { key, source }
+                SetupError::key(&key, source)
             };
             let solid = generate(made).map_err(failed)?;
             let (mut mesh, moved_back) = of_order(solid, request.order).map_err(failed)?;
@@ -209,7 +149,8 @@ fn build_around(
             request.place.put(&mut mesh.nodes);
             check(&mesh, &limits).map_err(|faults| {
                 let faults = named(faults, &labels);
-                SolidMeshError::MadeFaults { faults }
+                let text = "these dimensions and cells do not make a valid mesh, change them";
+                SetupError::key("solid.mesh", format!("{text}: {faults}"))
             })?;
             (mesh, moved_back)
         }
@@ -238,7 +179,7 @@ fn without_emptied_sets(
     mesh: &mut TetMesh,
     used: &[&str],
     path: &Path,
-) -> Result<Option<String>, SolidMeshError> {
+) -> Result<Option<String>, SetupError> {
     let empty: Vec<String> = mesh
         .node_sets
         .iter()
@@ -246,7 +187,10 @@ fn without_emptied_sets(
         .map(|(name, _)| name.clone())
         .collect();
     if let Some(name) = empty.iter().find(|name| used.contains(&name.as_str())) {
-        return Err(SolidMeshError::EmptiedSet { path: path.to_path_buf(), name: name.clone() });
+        let text = format!(
+            "no node of set \"{name}\", which the scene uses, belongs to an element; name a set on the body"
+        );
+        return Err(in_file(path, text));
     }
     mesh.node_sets.retain(|_, set| !set.is_empty());
     let note = || {
@@ -258,8 +202,9 @@ fn without_emptied_sets(
     Ok((!empty.is_empty()).then(note))
 }
 
-fn in_mesh(path: &Path, source: MeshError) -> SolidMeshError {
-    SolidMeshError::Mesh { path: path.to_path_buf(), source }
+/// An error inside a mesh file.
+fn in_file(path: &Path, error: impl Display) -> SetupError {
+    SetupError::of(None, format!("{}: {error}", path.display()))
 }
 
 /// Faults with the file's numbers of elements and nodes.
@@ -293,17 +238,22 @@ fn from_file(
     request: &MeshRequest,
     bore: Option<&BorePlace>,
     path: &Path,
-) -> Result<(TetMesh, usize, Option<String>), SolidMeshError> {
+) -> Result<(TetMesh, usize, Option<String>), SetupError> {
     match (mesh.order(), request.order) {
         (Order::Quadratic, Some(Order::Linear)) => {
-            Err(SolidMeshError::Order { path: path.to_path_buf() })
+            let text = format!(
+                "{} has ten-node elements, which are not converted to four-node ones; leave `order` out, or save the mesh \
+                 with elements of first order",
+                path.display()
+            );
+            Err(SetupError::key("solid.mesh.order", text))
         }
         (Order::Linear, Some(Order::Quadratic)) => {
             let raised = match bore {
                 Some(bore) => elevate_with_bore(&mesh, request, bore),
                 None => elevate(&mesh, &[]).map(|elevated| (elevated, None)),
             };
-            let (elevated, note) = raised.map_err(|source| in_mesh(path, source))?;
+            let (elevated, note) = raised.map_err(|error| in_file(path, error))?;
             Ok((elevated.mesh, elevated.moved_back, note))
         }
         _ => Ok((mesh, 0, None)),
@@ -358,13 +308,17 @@ fn generate(source: &MeshSource) -> Result<Solid, MeshError> {
 }
 
 /// Adds sets by geometry to those of the mesh.
-fn with_sets(mut mesh: TetMesh, request: &MeshRequest) -> Result<TetMesh, SolidMeshError> {
+fn with_sets(mut mesh: TetMesh, request: &MeshRequest) -> Result<TetMesh, SetupError> {
     let boundary = if request.sets.is_empty() { Vec::new() } else { surface(&mesh) };
     for (index, set) in request.sets.iter().enumerate() {
         let tolerance = set.tolerance.unwrap_or(ON_SURFACE * mesh.size());
-        let failed = |source| SolidMeshError::Set { index, source };
+        let failed = |error: MeshError| SetupError::item("solid.set", index, "name", error);
         if mesh.node_sets.contains_key(&set.name) || mesh.surface_sets.contains_key(&set.name) {
-            return Err(SolidMeshError::SetTwice { index, name: set.name.clone() });
+            let text = format!(
+                "the mesh, or an earlier [[solid.set]], already has a set called \"{}\"",
+                set.name
+            );
+            return Err(SetupError::item("solid.set", index, "name", text));
         }
         match set.place {
             SetPlace::Surface(on) => {

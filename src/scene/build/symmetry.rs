@@ -1,6 +1,6 @@
 //! A quarter of a bushing represents the whole if its planes of symmetry stay planes without forces across them.
 
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::SceneError;
 use crate::scene::resolve::solid_scene::Held;
 use crate::scene::text::document::Document;
 use crate::scene::text::items::ItemRef;
@@ -8,7 +8,6 @@ use crate::scene::text::value::Checked;
 
 /// Axes across the planes, and their sets.
 const PLANES: [(&str, &str); 2] = [("x", "x_low"), ("y", "y_low")];
-const ADVICE: &str = "leave it out, or write part = \"whole\"";
 
 /// # Errors
 ///
@@ -19,23 +18,20 @@ pub(crate) fn check(document: &Document, held: &[Held]) -> Result<(), SceneError
             continue;
         }
         let reason = format!(
-            "a quarter represents the whole only if its planes of symmetry are fixed, and set {set:?} is not fixed along {name}"
+            "a quarter represents the whole only if its planes of symmetry are fixed, and set {set:?} is not fixed along {name}. Hint: add [[solid.fixed]] with set = {set:?}, {name} = true, or write part = \"whole\""
         );
-        let advice = format!(
-            "add [[solid.fixed]] with set = {set:?}, {name} = true, or write part = \"whole\""
-        );
-        return Err(document.refused("solid.mesh.part", reason, advice));
+        return Err(document.refused("solid.mesh.part", reason));
     }
     for key in ["solid.gravity", "solid.velocity"] {
         if let Some(Checked::Vector(along)) = document.value(key)
             && let Some(axis) = (0..2).find(|axis| along[*axis] != 0.0)
         {
-            return Err(document.refused(key, across(PLANES[axis].0), ADVICE));
+            return Err(document.refused(key, across(PLANES[axis].0)));
         }
     }
     if matches!(document.value("solid.spin"), Some(Checked::Number(spin)) if *spin != 0.0) {
-        let reason = "a quarter cannot rotate";
-        return Err(document.refused("solid.spin", reason, ADVICE));
+        let reason = "a quarter cannot rotate. Hint: leave it out, or write part = \"whole\"";
+        return Err(document.refused("solid.spin", reason));
     }
     document.items("solid.load").try_for_each(load)
 }
@@ -48,7 +44,7 @@ fn load(item: ItemRef) -> Result<(), SceneError> {
         };
         let key = if force { "force" } else { name };
         if force || item.value(name).is_some() {
-            return Err(item.error(key, Problem::refused(across(name), ADVICE)));
+            return Err(item.refused(key, across(name)));
         }
     }
     Ok(())
@@ -56,6 +52,7 @@ fn load(item: ItemRef) -> Result<(), SceneError> {
 
 fn across(axis: &str) -> String {
     format!(
-        "along {axis} it crosses a plane of symmetry of the quarter, whose mirror image would have to move the other way"
+        "along {axis} it crosses a plane of symmetry of the quarter, whose mirror image would have to move the other \
+         way. Hint: leave it out, or write part = \"whole\""
     )
 }

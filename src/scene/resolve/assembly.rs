@@ -117,8 +117,8 @@ fn without_bearing(document: &Document) -> Result<Option<Box<Scene>>, SceneError
     let keys = [keys::DEFAULTS, "ball_forces.centrifugal"];
     let given = keys.into_iter().find(|key| document.is_given(key));
     if let Some(key) = OF_BEARINGS.iter().find_map(|of| document.first_below(of)).or(given) {
-        let reason = "the scene has no bearing";
-        return Err(document.refused(key, reason, "leave it out, or add [bearing]"));
+        let reason = "the scene has no bearing. Hint: leave it out, or add [bearing]";
+        return Err(document.refused(key, reason));
     }
     let mut stand_in = document.clone();
     for (key, value) in STAND_IN {
@@ -157,8 +157,8 @@ fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), Scen
         ("body.unbalance", UNBALANCE),
     ];
     let refused = |reason: &str| {
-        let advice = "leave it out, or write method = \"explicit\" in [housing]";
-        Problem::refused(reason, advice)
+        let hint = "leave it out, or write method = \"explicit\" in [housing]";
+        Problem::refused(format!("{reason}. Hint: {hint}"))
     };
     for body in &scene.bodies {
         let scoped = document.scoped(&body.name);
@@ -176,9 +176,8 @@ fn refuse_inertia(document: &Document, scene: &AssemblyScene) -> Result<(), Scen
 fn refuse_invalid_names(document: &Document) -> Result<(), SceneError> {
     for table in ["body", "spring"] {
         if document.names(table).next().is_none() && document.first_below(table).is_some() {
-            let reason = format!("a {table} has a name");
-            let advice = format!("write [{table}.NAME]");
-            return Err(document.refused(table, reason, advice));
+            let reason = format!("a {table} has a name. Hint: write [{table}.NAME]");
+            return Err(document.refused(table, reason));
         }
     }
     for table in ["inner_race", "outer_race", "housing", "solid"] {
@@ -194,9 +193,10 @@ fn refuse_invalid_names(document: &Document) -> Result<(), SceneError> {
             if let Some(twice) =
                 document.names(table).find(|n| document.names(other).any(|o| o == *n))
             {
-                let reason = format!("a {other} has this name as well");
-                let advice = "names are prefixes of columns: give each thing its own";
-                return Err(document.error_of_name(table, twice, Problem::refused(reason, advice)));
+                let reason = format!(
+                    "a {other} has this name as well. Hint: names are prefixes of columns: give each thing its own"
+                );
+                return Err(document.error_of_name(table, twice, Problem::refused(reason)));
             }
         }
     }
@@ -223,33 +223,43 @@ fn bearing(
         Some(name) => document.scoped(name),
         None => document.common(),
     };
-    let (carriers, reversed) = {
+    let (carriers, reversed, places) = {
         let mut reader = Reader::new(&scoped);
         let inner = carrier(&reader, 0, "bearing.inner_on", bodies)?;
         let outer = carrier(&reader, 1, "bearing.outer_on", bodies)?;
-        let at = reader.number("bearing.inner_at").unwrap_or(0.0);
+        let at = reader.given_number("bearing.inner_at").unwrap_or(0.0);
         let outer_at = reader.given_number("bearing.outer_at").unwrap_or(at);
         let reversed = matches!(scoped.value("bearing.reversed"), Some(Checked::Boolean(true)));
+        for (side, (name, body, at)) in
+            [("inner", inner, at), ("outer", outer, outer_at)].into_iter().enumerate()
+        {
+            let on = body.map_or(OWN_RACES[side], |body| bodies[body]);
+            reader.follow(&format!("bearing.{name}_on"), on.to_string());
+            reader.follow(&format!("bearing.{name}_at"), at);
+        }
+        reader.follow("bearing.reversed", reversed);
         let placed = |body: Option<usize>, at| match body {
             Some(index) => Carrier::Body { index, at },
             None => Carrier::Own { at },
         };
-        (([placed(inner, at), placed(outer, outer_at)], [inner, outer]), reversed)
+        let carriers = ([placed(inner, at), placed(outer, outer_at)], [inner, outer]);
+        (carriers, reversed, reader.into_defaults_used())
     };
     let (carriers, on) = carriers;
     if on[0].is_some() && on[0] == on[1] {
-        let reason = "both races would be on this body";
-        let advice = "write outer_on = \"outer_race\", or another body";
-        return Err(scoped.refused("bearing.outer_on", reason, advice));
+        let reason = "both races would be on this body. Hint: write outer_on = \"outer_race\", or another body";
+        return Err(scoped.refused("bearing.outer_on", reason));
     }
     for (race, body) in OWN_RACES.iter().zip(on) {
         let Some(body) = body else { continue };
         let of_race =
             |path: &str| path.strip_prefix(race).is_some_and(|rest| rest.starts_with('.'));
         if let Some(key) = scoped.given_keys().map(|key| key.path).find(|path| of_race(path)) {
-            let reason = format!("this race is on body.{}", bodies[body]);
-            let advice = format!("write loads and motions in [body.{}]", bodies[body]);
-            return Err(scoped.refused(key, reason, advice));
+            let reason = format!(
+                "this race is on body.{}. Hint: write loads and motions in [body.{}]",
+                bodies[body], bodies[body]
+            );
+            return Err(scoped.refused(key, reason));
         }
         if *race == OWN_RACES[0] {
             let of_body = document.scoped(bodies[body]);
@@ -265,13 +275,15 @@ fn bearing(
         }
     };
     if let (Some(body), Some(_)) = (on[1], &housing) {
-        let reason = format!("the outer race is on body.{}, not in a bore", bodies[body]);
-        let advice = "leave out outer_on, or the housing";
-        return Err(scoped.refused("bearing.outer_on", reason, advice));
+        let reason = format!(
+            "the outer race is on body.{}, not in a bore. Hint: leave out outer_on, or the housing",
+            bodies[body]
+        );
+        return Err(scoped.refused("bearing.outer_on", reason));
     }
     if let Some(PlacedHousing { settings, solid }) = housing.as_mut().filter(|_| name.is_some()) {
         for used in settings.defaults_used.iter_mut().chain(&mut solid.defaults_used) {
-            used.key = scoped.shown(&used.key, true);
+            used.name(&scoped);
         }
     }
     if let Some(body) = on[1] {
@@ -281,6 +293,7 @@ fn bearing(
     for (race, _) in OWN_RACES.iter().zip(on).filter(|(_, body)| body.is_some()) {
         forget_race(&mut scene, race);
     }
+    scene.defaults_used.extend(places);
     name_defaults(&mut scene, &scoped, name, shared);
     Ok(PlacedBearing { name: name.map(str::to_string), carriers, reversed, scene, housing })
 }
@@ -297,9 +310,10 @@ fn refuse_no_housing(
     let Some(own) = name.filter(|name| document.names("solid").any(|solid| solid == *name)) else {
         return Ok(());
     };
-    let reason = "this bearing has no housing whose solid it could be";
-    let advice = format!("add [housing.{own}], or leave it out");
-    Err(document.error_of_name("solid", own, Problem::refused(reason, advice)))
+    let reason = format!(
+        "this bearing has no housing whose solid it could be. Hint: add [housing.{own}], or leave it out"
+    );
+    Err(document.error_of_name("solid", own, Problem::refused(reason)))
 }
 
 /// Requires a speed of the body under the inner race for the centrifugal force of the balls.
@@ -328,9 +342,11 @@ fn carrier(
             }
             (0, 0 | 1) | (1, _) => Ok(None),
             _ => {
-                let reason = format!("there are several bodies: {}", bodies.join(", "));
-                let advice = "say which one carries the inner race, or \"inner_race\"";
-                Err(document.refused(key, reason, advice))
+                let reason = format!(
+                    "there are several bodies: {}. Hint: say which one carries the inner race, or \"inner_race\"",
+                    bodies.join(", ")
+                );
+                Err(document.refused(key, reason))
             }
         };
     };
@@ -367,7 +383,7 @@ fn name_defaults(
     };
     for list in [&mut scene.defaults_used, &mut scene.dynamics.defaults_used] {
         for used in list.iter_mut().filter(|used| of_bearing(&used.key)) {
-            used.key = scoped.shown(&used.key, true);
+            used.name(scoped);
         }
         list.retain(|used| !shared.contains(used));
         shared.extend(list.iter().filter(|used| !of_bearing(&used.key)).cloned());
@@ -380,9 +396,8 @@ fn refuse_mixed_methods(document: &Document, bearings: &[PlacedBearing]) -> Resu
     let first = bearings.iter().find_map(method);
     let other = bearings.iter().find(|placed| method(placed).is_some_and(|m| Some(m) != first));
     let Some(PlacedBearing { name: Some(name), .. }) = other else { return Ok(()) };
-    let reason = "this housing and another are solved in different ways";
-    let advice = "give all the same method, in [housing]";
-    Err(document.scoped(name).error("housing.method", Problem::refused(reason, advice)))
+    let reason = "this housing and another are solved in different ways. Hint: give all the same method, in [housing]";
+    Err(document.scoped(name).error("housing.method", Problem::refused(reason)))
 }
 
 /// Refuses bodies with the column names of a race or a cage.
@@ -395,9 +410,10 @@ fn refuse_shared_columns(document: &Document, scene: &AssemblyScene) -> Result<(
             let Some((_, part)) = same else { continue };
             let of =
                 placed.name.as_ref().map_or(String::new(), |name| format!(" of bearing {name}"));
-            let reason = format!("columns of the {part}{of} begin with this name");
-            let advice = "choose another name, such as hub";
-            let problem = Problem::refused(reason, advice);
+            let reason = format!(
+                "columns of the {part}{of} begin with this name. Hint: choose another name, such as hub"
+            );
+            let problem = Problem::refused(reason);
             return Err(document.error_of_name("body", &body.name, problem));
         }
     }
@@ -417,16 +433,11 @@ fn refuse_free_bodies(document: &Document, scene: &AssemblyScene) -> Result<(), 
             .iter()
             .any(|spring| spring.ends.iter().any(|end| end.at == SpringAt::Body(index)));
         if !carries && !joined {
-            let reason = "nothing is joined to this body";
-            let advice = format!(
-                "name it in a bearing (inner_on = {0:?}) or a spring (from = {0:?}), or leave it out",
+            let reason = format!(
+                "nothing is joined to this body. Hint: name it in a bearing (inner_on = {0:?}) or a spring (from = {0:?}), or leave it out",
                 body.name
             );
-            return Err(document.error_of_name(
-                "body",
-                &body.name,
-                Problem::refused(reason, advice),
-            ));
+            return Err(document.error_of_name("body", &body.name, Problem::refused(reason)));
         }
     }
     Ok(())
@@ -447,8 +458,8 @@ fn body(
         // It follows from the beam.
         NO_INERTIA
     } else if needs_mass || parts.iter().any(|key| reader.is_given(key)) {
-        let missing = |key: &String| {
-            let (_, key) = keys::find(key).ok_or_else(|| reader.missing(key, ""))?;
+        let missing = |path: &String| {
+            let (_, key) = keys::find(path).ok_or_else(|| reader.missing(path, ""))?;
             let because = format!(" of body.{name}, for a run and with gravity");
             let example = format!("`inertia.{} = {}` to [body.{name}]", key.name(), key.example());
             Err(scoped.error(key.path, Problem::Missing { because, example }))

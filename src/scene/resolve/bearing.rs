@@ -6,13 +6,15 @@ use crate::ch2_housing::bearing::rating::LARGEST_CONTACT_ANGLE;
 use crate::equilibrium::statics::COORDINATE_NAMES;
 use crate::members::body::{Condition, Drive};
 use crate::numeric::profile::Profile;
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::{Problem, SceneError, mm};
 use crate::scene::resolve::resolved::{DefaultUsed, Plot, RunPlot, Scene};
+use crate::scene::resolve::unused::refuse_unused;
 use crate::scene::resolve::{cage, dynamics, geometry, profile, solid};
 use crate::scene::tables::keys;
-use crate::scene::tables::keys::{DEFAULT_SETS, DEFAULTS, Kind, Need};
+use crate::scene::tables::keys::{DEFAULT_SETS, DEFAULTS, Need};
 use crate::scene::text::document::Document;
-use crate::scene::text::units::{parse_number, parse_quantity};
+use crate::scene::text::items::ItemRef;
+use crate::scene::text::value;
 use crate::scene::text::value::Checked;
 
 /// Validates the document as a whole and turns it into SI.
@@ -29,18 +31,19 @@ pub fn resolve(document: &Document) -> Result<Scene, SceneError> {
 pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> {
     let mut reader = Reader::new(document);
     reader.choice(DEFAULTS);
-    let kind = match reader.required_choice("bearing.kind")? {
+    let kind = match reader.required_choice("bearing.kind", "")? {
         "angular-contact" => BearingKind::AngularContact,
         _ => BearingKind::DeepGroove,
     };
+    refuse_unused(document, &["bearing", "outer_race", "traction", "contact_damping"])?;
     let (geometry, dimensions) = geometry::geometry(&mut reader, kind)?;
     let cage = cage::cage(&reader, &geometry, &dimensions)?;
     let dynamic_rating = rating(&reader, &geometry)?;
     let hertz = match reader.choice("bearing.hertz") {
-        Some("exact") => HertzModel::Exact,
+        "exact" => HertzModel::Exact,
         _ => HertzModel::HamrockBrewe,
     };
-    let ball_phase = reader.number("bearing.ball_phase").unwrap_or(0.0);
+    let ball_phase = reader.number("bearing.ball_phase");
     let inner_material = reader.material("bearing.inner_race.material");
     let outer_material = reader.material("bearing.outer_race.material");
     let ball_material = reader.material("bearing.ball.material");
@@ -52,20 +55,8 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
     let outer_race = reader.outer_race(geometry.ball_radius)?;
     let inner_speed = reader.profile("inner_race.speed").map(|speed| speed.value(0.0));
     let outer_speed = reader.profile("outer_race.speed").map(|speed| speed.value(0.0));
-    let gravity = match document.value("ball_forces.gravity") {
-        Some(Checked::Vector(gravity)) => *gravity,
-        _ => {
-            reader.note_default("ball_forces.gravity");
-            [0.0; 3]
-        }
-    };
-    let centrifugal = match document.value("ball_forces.centrifugal") {
-        Some(Checked::Boolean(centrifugal)) => *centrifugal,
-        _ => {
-            reader.note_default("ball_forces.centrifugal");
-            false
-        }
-    };
+    let gravity = reader.vector("ball_forces.gravity");
+    let centrifugal = reader.boolean("ball_forces.centrifugal");
     if centrifugal && inner_speed.is_none() {
         return Err(reader.missing("inner_race.speed", " with `ball_forces.centrifugal = true`"));
     }
@@ -84,7 +75,7 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
     Ok(Scene {
         title: text(document, "title"),
         source: text(document, "source"),
-        assumptions: document.assumptions().to_vec(),
+        assumptions: document.assumptions(),
         geometry,
         dimensions,
         inner_material,
@@ -103,7 +94,7 @@ pub(crate) fn resolve_bearing(document: &Document) -> Result<Scene, SceneError> 
         dynamics,
         plots,
         rigid_housing: false,
-        sweep: document.sweep().to_vec(),
+        sweep: document.sweep(),
         defaults_used,
     })
 }
@@ -113,9 +104,8 @@ fn rating(reader: &Reader, geometry: &BearingGeometry) -> Result<Option<f64>, Sc
     const DYNAMIC: &str = "bearing.rating.dynamic";
     let given = reader.given_number(DYNAMIC);
     if given.is_some() && geometry.contact_angle > LARGEST_CONTACT_ANGLE {
-        let reason = "the rating life of a thrust bearing is not modelled";
-        let advice = "leave it out, or use a contact angle of at most 45 deg";
-        return Err(reader.document.error(DYNAMIC, Problem::refused(reason, advice)));
+        let reason = "the rating life of a thrust bearing is not modelled. Hint: leave it out, or use a contact angle of at most 45 deg";
+        return Err(reader.document.error(DYNAMIC, Problem::refused(reason)));
     }
     Ok(given)
 }
@@ -139,17 +129,13 @@ impl<'d> Reader<'d> {
     pub fn note_named(self, defaults: &mut Vec<DefaultUsed>) {
         let document = self.document;
         defaults.extend(self.defaults_used.into_iter().map(|mut used| {
-            used.key = document.shown(&used.key, true);
+            used.name(document);
             used
         }));
     }
 
     pub fn given_number(&self, path: &str) -> Option<f64> {
-        match self.document.value(path)? {
-            Checked::Number(value) => Some(*value),
-            Checked::Integer(value) => Some(*value as f64),
-            _ => None,
-        }
+        self.document.value(path)?.number()
     }
 
     pub fn is_given(&self, path: &str) -> bool {
@@ -158,81 +144,114 @@ impl<'d> Reader<'d> {
 
     /// The given profile; a plain quantity is a constant one.
     pub fn profile(&self, path: &str) -> Option<Profile> {
-        match self.document.value(path)? {
-            Checked::Number(value) => Some(Profile::Constant(*value)),
-            Checked::Profile(profile) => Some(profile.clone()),
-            _ => None,
-        }
+        self.document.value(path)?.profile()
     }
 
     /// The given number, else the default of the key table.
-    pub fn number(&mut self, path: &str) -> Option<f64> {
-        self.given_number(path).or_else(|| {
-            self.note_default(path);
-            default_number(path, self.set())
-        })
+    pub fn number(&mut self, path: &str) -> f64 {
+        self.given_number(path).unwrap_or_else(|| self.default_number(path, path))
+    }
+
+    /// The default number of the key table, which is then in use for the key `filled`.
+    fn default_number(&mut self, path: &str, filled: &str) -> f64 {
+        let value = self.note_default_of(path, filled);
+        value.and_then(|value| value.number()).unwrap_or(0.0)
     }
 
     pub fn required_number(&self, path: &str, because: &str) -> Result<f64, SceneError> {
         self.given_number(path).ok_or_else(|| self.missing(path, because))
     }
 
-    fn given_choice(&self, path: &str) -> Option<&'static str> {
-        match self.document.value(path)? {
-            Checked::Choice(word) => Some(word),
-            _ => None,
-        }
+    /// The default word of the key table, which is then in use.
+    fn default_word(&mut self, path: &str) -> &'static str {
+        self.note_default(path);
+        let need = keys::find(path).map(|(_, key)| key.need);
+        need.and_then(|need| need.default_in(self.set())).map_or("", |(value, _)| value)
     }
 
     /// The given choice, else the default of the key table.
-    pub fn choice(&mut self, path: &str) -> Option<&'static str> {
-        self.given_choice(path).or_else(|| {
-            self.note_default(path);
-            Some(keys::find(path)?.1.need.default_in(self.set())?.0)
-        })
+    pub fn choice(&mut self, path: &str) -> &'static str {
+        self.choice_if_given(path).unwrap_or_else(|| self.default_word(path))
     }
 
     /// The given truth value, else the default of the key table.
     pub fn boolean(&mut self, path: &str) -> bool {
-        if let Some(Checked::Boolean(value)) = self.document.value(path) {
-            return *value;
-        }
-        self.note_default(path);
-        let need = keys::find(path).map(|(_, key)| key.need);
-        need.and_then(|need| need.default_in(self.set())).is_some_and(|(value, _)| value == "true")
+        let given = self.document.value(path).and_then(Checked::boolean);
+        given.unwrap_or_else(|| self.default_word(path) == "true")
+    }
+
+    /// The given vector, else zero, the default of all vectors that are read so.
+    pub fn vector(&mut self, path: &str) -> [f64; 3] {
+        self.document.value(path).and_then(Checked::vector).unwrap_or_else(|| {
+            self.note_default(path);
+            [0.0; 3]
+        })
+    }
+
+    /// The given number of a table of a list, else the default of the key table.
+    pub fn of_item(&mut self, item: ItemRef, name: &str) -> f64 {
+        item.number(name)
+            .unwrap_or_else(|| self.default_number(&item.path(name), &item.own_path(name)))
+    }
+
+    /// The given number, else one that follows from other keys.
+    pub fn number_or(&mut self, path: &str, usual: f64, shown: &str, reason: &str) -> f64 {
+        self.given_number(path).unwrap_or_else(|| {
+            self.note(path, shown, reason).fill(path, usual);
+            usual
+        })
+    }
+
+    /// The same for a choice.
+    pub fn choice_or(&mut self, path: &str, usual: &'static str, reason: &str) -> &'static str {
+        self.choice_if_given(path).unwrap_or_else(|| {
+            self.note(path, usual, reason).fill(path, usual);
+            usual
+        })
     }
 
     /// Name of the set of defaults.
     fn set(&self) -> &'static str {
-        self.given_choice(DEFAULTS).unwrap_or(DEFAULT_SETS[0])
+        self.choice_if_given(DEFAULTS).unwrap_or(DEFAULT_SETS[0])
     }
 
     /// The given choice, without the default.
     pub fn choice_if_given(&self, path: &str) -> Option<&'static str> {
-        self.given_choice(path)
+        self.document.value(path)?.choice()
     }
 
-    fn required_choice(&self, path: &str) -> Result<&'static str, SceneError> {
-        self.given_choice(path).ok_or_else(|| self.missing(path, ""))
+    pub fn required_choice(&self, path: &str, because: &str) -> Result<&'static str, SceneError> {
+        self.choice_if_given(path).ok_or_else(|| self.missing(path, because))
     }
 
     /// Records that the key table's default of `path` is in use.
     pub fn note_default(&mut self, path: &str) {
-        let set = self.set();
-        let Some((_, key)) = keys::find(path) else { return };
-        let Some((value, reason)) = key.need.default_in(set) else { return };
-        match key.need {
-            Need::BySet { .. } => self.note(path, value, &format!("{set} defaults: {reason}")),
-            _ => self.note(path, value, reason),
-        }
+        self.note_default_of(path, path);
     }
 
-    pub fn note(&mut self, key: &str, value: &str, reason: &str) {
-        self.defaults_used.push(DefaultUsed {
-            key: key.to_string(),
-            value: value.to_string(),
-            reason: reason.to_string(),
-        });
+    fn note_default_of(&mut self, path: &str, filled: &str) -> Option<Checked> {
+        let set = self.set();
+        let (_, key) = keys::find(path)?;
+        let (shown, reason) = key.need.default_in(set)?;
+        let value = value::default_in(key, set);
+        let used = match key.need {
+            Need::BySet { .. } => self.note(path, shown, &format!("{set} defaults: {reason}")),
+            _ => self.note(path, shown, reason),
+        };
+        used.fills.extend(value.clone().map(|value| (filled.to_string(), value)));
+        value
+    }
+
+    pub fn note(&mut self, key: &str, value: &str, reason: &str) -> &mut DefaultUsed {
+        let [key, value, reason] = [key, value, reason].map(str::to_string);
+        self.defaults_used.push(DefaultUsed { key, value, reason, fills: Vec::new() });
+        let last = self.defaults_used.len() - 1;
+        &mut self.defaults_used[last]
+    }
+
+    /// Records the value of a key that is not reported as a default.
+    pub fn follow(&mut self, path: &str, value: impl Into<Checked>) {
+        self.note(path, "", "").fill(path, value);
     }
 
     pub fn missing(&self, path: &str, because: &str) -> SceneError {
@@ -250,17 +269,19 @@ impl<'d> Reader<'d> {
         if paths.iter().any(|path| self.is_given(path)) {
             let [modulus, poisson, density] = paths;
             return Material {
-                youngs_modulus: self.number(&modulus).unwrap_or(Material::STEEL.youngs_modulus),
-                poisson_ratio: self.number(&poisson).unwrap_or(Material::STEEL.poisson_ratio),
-                density: self.number(&density).unwrap_or(Material::STEEL.density),
+                youngs_modulus: self.number(&modulus),
+                poisson_ratio: self.number(&poisson),
+                density: self.number(&density),
             };
         }
-        self.note(
-            table,
-            "youngs_modulus 210 GPa, poisson_ratio 0.3, density 7850 kg/m^3",
-            "bearing steel",
-        );
-        Material::STEEL
+        let [modulus, poisson, density] = &paths;
+        let steel = Material::STEEL;
+        let value = "youngs_modulus 210 GPa, poisson_ratio 0.3, density 7850 kg/m^3";
+        self.note(table, value, "bearing steel")
+            .fill(modulus, steel.youngs_modulus)
+            .fill(poisson, steel.poisson_ratio)
+            .fill(density, steel.density);
+        steel
     }
 
     /// Load or prescribed motion of the five coordinates of a race.
@@ -268,19 +289,19 @@ impl<'d> Reader<'d> {
         let mut drives = [const { Drive::Load(Profile::ZERO) }; 5];
         for (drive, name) in drives.iter_mut().zip(COORDINATE_NAMES) {
             let table = format!("{race}.{name}");
-            let (load, held, zero) = if name.starts_with("tilt") {
-                ("moment", "tilt", "{ moment = \"0 N m\" }")
-            } else {
-                ("load", "displacement", "{ load = \"0 N\" }")
+            let zero = match name.starts_with("tilt") {
+                true => "{ moment = \"0 N m\" }",
+                false => "{ load = \"0 N\" }",
             };
-            let held = format!("{table}.{held}");
-            if let Some(load) = self.profile(&format!("{table}.{load}")) {
+            let held = dynamics::drive_key(race, name, false);
+            let loaded = dynamics::drive_key(race, name, true);
+            if let Some(load) = self.profile(&loaded) {
                 *drive = Drive::Load(load);
             } else if let Some(motion) = self.profile(&held) {
                 self.limit_displacement(&held, profile::largest(&motion), ball_radius)?;
                 *drive = Drive::Motion(motion);
             } else {
-                self.note(&table, zero, "the coordinate is free and unloaded");
+                self.note(&table, zero, "the coordinate is free and unloaded").fill(&loaded, 0.0);
             }
         }
         Ok(drives)
@@ -291,11 +312,10 @@ impl<'d> Reader<'d> {
         let mut position = [0.0; 5];
         for (value, name) in position.iter_mut().zip(COORDINATE_NAMES) {
             let path = format!("outer_race.{name}");
-            let held = if name.starts_with("tilt") { "tilt" } else { "displacement" };
-            if let Some(motion) = self.profile(&format!("{path}.{held}")) {
+            if let Some(motion) = self.profile(&dynamics::drive_key("outer_race", name, false)) {
                 *value = motion.value(0.0);
             } else {
-                *value = self.number(&path).unwrap_or(0.0);
+                *value = self.number(&path);
                 self.limit_displacement(&path, *value, ball_radius)?;
             }
         }
@@ -307,7 +327,14 @@ impl<'d> Reader<'d> {
         if path.contains("tilt") || value.abs() <= ball {
             return Ok(());
         }
-        Err(self.document.error(path, Problem::DisplacementTooLarge { displacement: value, ball }))
+        let problem = Problem::Contradiction(format!(
+            "the displacement {} is more than a ball radius. Allowed: {} to {}. Hint: check the unit; bearings deflect by \
+             micrometres",
+            mm(value),
+            mm(-ball),
+            mm(ball)
+        ));
+        Err(self.document.error(path, problem))
     }
 
     /// Plots of statics and of a run.
@@ -333,23 +360,9 @@ impl<'d> Reader<'d> {
 }
 
 pub(crate) fn text(document: &Document, path: &str) -> Option<String> {
-    match document.value(path)? {
-        Checked::Text(text) => Some(text.clone()),
-        _ => None,
-    }
+    document.value(path)?.text().map(str::to_string)
 }
 
 pub(crate) fn below(table: &str) -> String {
     if table.is_empty() { " at the top".to_string() } else { format!(" to [{table}]") }
-}
-
-fn default_number(path: &str, set: &str) -> Option<f64> {
-    let (_, key) = keys::find(path)?;
-    let (value, _) = key.need.default_in(set)?;
-    match key.kind {
-        Kind::Quantity(dimension, _) | Kind::Profile(dimension, _) => {
-            parse_quantity(value, dimension).ok().map(|quantity| quantity.si)
-        }
-        _ => parse_number(value).ok(),
-    }
 }

@@ -7,7 +7,6 @@ use crate::mesh::generate::{Bushing, BushingMesh, Part, bushing as mesh_of};
 use crate::scene::build::assembly::{BushingInElements, BushingOfSpring, BushingStepping};
 use crate::scene::error::SceneError;
 use crate::scene::resolve::bearing::Reader;
-use crate::scene::resolve::contact::refuse_without_effect_on;
 use crate::scene::resolve::rubber::rubber;
 use std::f64::consts::TAU;
 use std::sync::{Mutex, PoisonError};
@@ -26,64 +25,50 @@ pub(crate) fn bushing(
     if document.first_below(TABLE).is_none() {
         return Ok(None);
     }
-    for part in ["spring.stiffness", "spring.maxwell"] {
-        if let Some(given) = document.first_below(part) {
-            let reason =
-                "the spring is a bushing, whose stiffness follows from its dimensions and rubber";
-            return Err(document.refused(given, reason, "leave this or [spring.NAME.bushing] out"));
-        }
-    }
+    let reason = "the spring is a bushing, whose stiffness follows from its dimensions and rubber. Hint: leave this or \
+                  [spring.NAME.bushing] out";
+    document.refuse_given(&[("spring.stiffness", reason), ("spring.maxwell", reason)])?;
     let size = |key: &str| reader.required_number(&format!("{TABLE}.{key}"), " of a bushing");
     let [inner_diameter, outer_diameter, length] =
         [size("inner_diameter")?, size("outer_diameter")?, size("length")?];
     let thickness = 0.5 * (outer_diameter - inner_diameter);
     let thick = thickness > 0.0;
     if !thick {
-        let reason = "it is no larger than the inner diameter";
-        let advice = "give a larger one; both are those of the rubber";
-        return Err(document.refused("spring.bushing.outer_diameter", reason, advice));
+        let reason = "it is no larger than the inner diameter. Hint: give a larger one; both are those of the rubber";
+        return Err(document.refused("spring.bushing.outer_diameter", reason));
     }
     let [usual_radial, usual_axial] = usual_cells(thickness, length);
-    let around = reader.number("spring.bushing.cells.around").map_or(0, |count| count as usize);
+    let around = reader.number("spring.bushing.cells.around") as usize;
     let mut cells = |key: &str, usual: usize| {
-        let path = format!("{TABLE}.cells.{key}");
-        reader.given_number(&path).map_or_else(
-            || {
-                reader.note(
-                    &path,
-                    &usual.to_string(),
-                    "from the length and thickness of the bushing",
-                );
-                usual
-            },
-            |count| count as usize,
-        )
+        let (path, shown) = (format!("{TABLE}.cells.{key}"), usual.to_string());
+        let reason = "from the length and thickness of the bushing";
+        reader.number_or(&path, usual as f64, &shown, reason) as usize
     };
     let [radial, axial] = [cells("radial", usual_radial), cells("axial", usual_axial)];
     let all = around * radial * axial;
     if all > MOST_CELLS {
-        let reason = format!("{around} × {radial} × {axial} are {all} cells");
-        let advice = "take at most 1500, each is five elements of ten nodes; finer ones are for [solid.mesh] with \
-                      `generate = \"bushing\"`";
-        return Err(document.refused("spring.bushing.cells", reason, advice));
+        let reason = format!(
+            "{around} × {radial} × {axial} are {all} cells. Hint: take at most 1500, each is five elements of ten nodes; finer ones are for [solid.mesh] with \
+                      `generate = \"bushing\"`"
+        );
+        return Err(document.refused("spring.bushing.cells", reason));
     }
     let mesh = BushingMesh { around, radial, axial, grading: GRADING, part: Part::Quarter };
     let body = Bushing { inner_diameter, thickness, length };
-    let fastest = reader.number("spring.bushing.fastest").unwrap_or(10e3);
+    let fastest = reader.number("spring.bushing.fastest");
     let table = reader.choice_if_given("spring.bushing.table");
     let because = " of a bushing without `table`";
     let material = rubber(reader, TABLE, table, ChainPull::FiveTerms, because)?;
     let (misses, elements) = ([0.0; 4], None);
     let mut of = BushingOfSpring { body, mesh, material, table, fastest, misses, elements };
     let spring = fitted(&of).map_err(|(key, error)| {
-        document.refused(key, error, "check its dimensions, cells and rubber")
+        document.refused(key, format!("{error}. Hint: check its dimensions, cells and rubber"))
     })?;
     of.misses = spring.misses;
-    let method = reader.choice("spring.bushing.method").unwrap_or("reduced");
-    refuse_without_effect_on(reader, ("method", method), OF_METHODS)?;
+    let method = reader.choice("spring.bushing.method");
     let stepping = match method {
         "explicit" => {
-            let fraction = reader.number("spring.bushing.step_fraction").unwrap_or(0.8);
+            let fraction = reader.number("spring.bushing.step_fraction");
             Some(BushingStepping::Explicit { fraction })
         }
         "implicit" => {
@@ -92,8 +77,8 @@ pub(crate) fn bushing(
         _ => None,
     };
     of.elements = stepping.map(|stepping| {
-        let density = reader.number("spring.bushing.density").unwrap_or(1100.0);
-        let coupling_phase = reader.number("spring.bushing.coupling_phase").unwrap_or(0.2);
+        let density = reader.number("spring.bushing.density");
+        let coupling_phase = reader.number("spring.bushing.coupling_phase");
         BushingInElements { density, stepping, coupling_phase }
     });
     Ok(Some((of, spring.law)))
@@ -110,14 +95,6 @@ fn usual_cells(thickness: f64, length: f64) -> [usize; 2] {
         _ => [4, 4],
     }
 }
-
-/// Keys of some methods, and these methods.
-const OF_METHODS: &[(&str, &[&str])] = &[
-    ("spring.bushing.density", &["explicit", "implicit"]),
-    ("spring.bushing.coupling_phase", &["explicit", "implicit"]),
-    ("spring.bushing.step_fraction", &["explicit"]),
-    ("spring.bushing.step", &["implicit"]),
-];
 
 /// The last fitted bushings: a sweep reads one scene many times, and a fit takes a second.
 static FITTED: Mutex<Vec<(BushingOfSpring, BushingSpring)>> = Mutex::new(Vec::new());

@@ -6,7 +6,7 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch2_housing::bearing::inertia::{Inertia, hollow_cylinder};
 use crate::ch2_housing::bore_contact::Penalty;
 use crate::mesh;
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::{Problem, SceneError, mm};
 use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::dynamics::{check_inertia, millimetres};
 use crate::scene::resolve::resolved::{Cage, CageInRun, CageMethod, Dimensions, FlexibleCage};
@@ -38,7 +38,11 @@ pub(crate) fn cage(
     if let Some(pocket) = cage.pocket_radius
         && pocket < geometry.ball_radius
     {
-        let problem = Problem::BallExceedsPocket { pocket, ball: geometry.ball_radius };
+        let (pocket, ball) = (mm(pocket), mm(geometry.ball_radius));
+        let problem = Problem::Contradiction(format!(
+            "the pocket radius {pocket} is smaller than the ball radius {ball}. Allowed: at least {ball}. Hint: a ball must fit \
+             its pocket"
+        ));
         return Err(reader.document.error("bearing.cage.pocket_radius", problem));
     }
     if let Some(pocket) = cage.pocket_radius {
@@ -47,27 +51,18 @@ pub(crate) fn cage(
         let room =
             pitch.unwrap_or(geometry.pitch_radius) * libm::sin(PI / geometry.ball_count as f64);
         if pocket >= room {
-            let problem = Problem::WrongOrder {
-                value: pocket,
-                relation: "less than",
-                other_name: "half the distance between centres of pockets",
-                other: room,
-                advice: "pockets would run into each other, with no bar between them; check radius, not diameter, and the \
-                         number of balls",
-            };
+            let other = ("half the distance between centres of pockets", room);
+            let hint = "pockets would run into each other, with no bar between them; check radius, not diameter, and the number \
+                        of balls";
+            let problem = Problem::order(pocket, "less than", other, hint);
             return Err(reader.document.error("bearing.cage.pocket_radius", problem));
         }
     }
     if let (Some(inner), Some(outer)) = (cage.inner_radius, cage.outer_radius)
         && inner >= outer
     {
-        let problem = Problem::WrongOrder {
-            value: inner,
-            relation: "less than",
-            other_name: "the cage's outer radius",
-            other: outer,
-            advice: "are the two exchanged?",
-        };
+        let other = ("the cage's outer radius", outer);
+        let problem = Problem::order(inner, "less than", other, "are the two exchanged?");
         return Err(reader.document.error("bearing.cage.inner_radius", problem));
     }
     check_between_races(reader, &cage, geometry.pitch_radius, sizes)?;
@@ -115,8 +110,7 @@ fn check_between_races(
         let overlaps = |value: f64, other: f64| (other - value) * outward <= 0.0;
         if overlaps(radius, other) {
             let advice = "a cage is between the races; check radius, not diameter, and unit";
-            let problem =
-                Problem::WrongOrder { value: radius, relation, other_name, other, advice };
+            let problem = Problem::order(radius, relation, (other_name, other), advice);
             return Err(reader.document.error(key, problem));
         }
         // Radius of the guiding surface of the race.
@@ -124,14 +118,7 @@ fn check_between_races(
         if cage.guidance == Some(guide) && overlaps(land, bottom) {
             let advice = "this is the sum of the cage's radius and race_clearance, at which the race \
                           guides it; a race ends at its groove";
-            let value = land;
-            let problem = Problem::WrongOrder {
-                value,
-                relation,
-                other_name: of_bottom,
-                other: bottom,
-                advice,
-            };
+            let problem = Problem::order(land, relation, (of_bottom, bottom), advice);
             return Err(reader.document.error("bearing.cage.race_clearance", problem));
         }
         // Balls hold the cage only where it has more room to the races than they have in their pockets.
@@ -139,14 +126,11 @@ fn check_between_races(
         if let (Some(Guidance::Balls), Some(pocket)) = (cage.guidance, cage.pocket_radius)
             && pocket - sizes.nominal_ball_radius >= room
         {
-            let problem = Problem::WrongOrder {
-                value: pocket - sizes.nominal_ball_radius,
-                relation: "less than",
-                other_name: "the room between the cage and a race",
-                other: room,
-                advice: "this is the room of a ball in its pocket: with so much the cage meets a race \
-                         first; write which one in `guidance`",
-            };
+            let advice = "this is the room of a ball in its pocket: with so much the cage meets a race \
+                          first; write which one in `guidance`";
+            let play = pocket - sizes.nominal_ball_radius;
+            let room = ("the room between the cage and a race", room);
+            let problem = Problem::order(play, "less than", room, advice);
             return Err(reader.document.error("bearing.cage.pocket_radius", problem));
         }
     }
@@ -188,15 +172,14 @@ pub(crate) fn in_run(
         let reason = format!("the scene gives no {} of the cage", missing.join(", "));
         return Ok(CageInRun::LeftOut(reason));
     };
-    let density = reader.number("bearing.cage.density").unwrap_or(7850.0);
+    let density = reader.number("bearing.cage.density");
     let length = match reader.given_number("bearing.cage.length") {
         Some(length) => length,
         None => {
             let pockets = geometry.ball_count as f64 * pocket_volume(pocket_radius, inner, outer);
             let length = (mass / density + pockets) / (PI * (outer * outer - inner * inner));
             let reason = "follows from the cage's mass, density, radii and pockets";
-            reader.note("bearing.cage.length", &millimetres(length), reason);
-            length
+            reader.number_or("bearing.cage.length", length, &millimetres(length), reason)
         }
     };
     let [axial, transverse] = given_inertia.unwrap_or_else(|| {
@@ -206,11 +189,16 @@ pub(crate) fn in_run(
             full.axial / full.mass * mass,
             full.transverse / full.mass * mass
         );
-        reader.note("bearing.cage.inertia", &value, "a hollow cylinder of the cage's mass");
-        [full.axial / full.mass * mass, full.transverse / full.mass * mass]
+        let [axial, transverse] =
+            [full.axial / full.mass * mass, full.transverse / full.mass * mass];
+        reader
+            .note("bearing.cage.inertia", &value, "a hollow cylinder of the cage's mass")
+            .fill("bearing.cage.inertia.axial", axial)
+            .fill("bearing.cage.inertia.transverse", transverse);
+        [axial, transverse]
     });
     let pocket = match reader.choice("bearing.cage.pocket") {
-        Some("spherical") => Pocket::Spherical,
+        "spherical" => Pocket::Spherical,
         _ => Pocket::Cylindrical,
     };
     let contacts = CageContacts {
@@ -219,8 +207,8 @@ pub(crate) fn in_run(
         pocket_pitch_radius: pitch.unwrap_or_else(|| {
             let reason = "the pockets are on the bearing's pitch circle";
             let value = millimetres(geometry.pitch_radius);
-            reader.note("bearing.cage.pocket_pitch_radius", &value, reason);
-            geometry.pitch_radius
+            let key = "bearing.cage.pocket_pitch_radius";
+            reader.number_or(key, geometry.pitch_radius, &value, reason)
         }),
         guidance,
         ring: [inner, outer],
@@ -229,11 +217,12 @@ pub(crate) fn in_run(
         length,
         force: force.unwrap_or_else(|| {
             let reason = "the source's stiffness (5.8), there at each node of a flexible cage";
-            reader.note("bearing.cage.contact.stiffness", "2e8 N/m", reason);
-            CageForce::Penalty { stiffness: 2e8 }
+            let (key, stiffness) = ("bearing.cage.contact.stiffness", 2e8);
+            reader.note(key, "2e8 N/m", reason).fill(key, Checked::Either(0, stiffness));
+            CageForce::Penalty { stiffness }
         }),
-        friction: reader.number("bearing.cage.friction").unwrap_or(0.1),
-        regularisation_speed: reader.number("bearing.cage.regularisation_speed").unwrap_or(0.01),
+        friction: reader.number("bearing.cage.friction"),
+        regularisation_speed: reader.number("bearing.cage.regularisation_speed"),
     };
     Ok(CageInRun::Body(CageBody { inertia: Inertia { mass, axial, transverse }, contacts }))
 }
@@ -259,26 +248,31 @@ pub(crate) fn flexible(
     let by_nodes = flexible || at == Some("nodes");
     if !by_nodes {
         if per_area.is_some() {
-            let reason = "a stiffness per area is for a cage that touches by its nodes";
-            let advice = "write `at = \"nodes\"` in [bearing.cage.contact], or a stiffness in N/m";
-            return Err(reader.document.refused(path, reason, advice));
+            let reason = "a stiffness per area is for a cage that touches by its nodes. Hint: write `at = \"nodes\"` in [bearing.cage.contact], or a stiffness in N/m";
+            return Err(reader.document.refused(path, reason));
         }
         return Ok(None);
     }
-    let refuse = |key: &str, reason: &str, advice: &str| {
-        Err(reader.document.refused(&format!("bearing.cage.{key}"), reason, advice))
+    let refuse = |key: &str, reason: &str| {
+        Err(reader.document.refused(&format!("bearing.cage.{key}"), reason))
     };
     if flexible && at == Some("surfaces") {
-        let advice = "leave it out, or write `body = \"rigid\"`";
-        return refuse("contact.at", "a flexible cage touches by the nodes of its mesh", advice);
+        return refuse(
+            "contact.at",
+            "a flexible cage touches by the nodes of its mesh. Hint: leave it out, or write `body = \"rigid\"`",
+        );
     }
     if reader.choice_if_given("bearing.cage.contact.law") == Some("hertz") {
-        let advice = "write `law = \"penalty\"`, or leave it out";
-        return refuse("contact.law", "nodes touch by the penalty of (5.8)", advice);
+        return refuse(
+            "contact.law",
+            "nodes touch by the penalty of (5.8). Hint: write `law = \"penalty\"`, or leave it out",
+        );
     }
     if reader.choice_if_given("bearing.cage.pocket") == Some("spherical") {
-        let advice = "leave it out: the mesh has round pockets with radial axes";
-        return refuse("pocket", "the mesh of a cage has cylindrical pockets", advice);
+        return refuse(
+            "pocket",
+            "the mesh of a cage has cylindrical pockets. Hint: leave it out: the mesh has round pockets with radial axes",
+        );
     }
     let CageInRun::Body(CageBody { contacts, inertia }) = cage else { return Ok(None) };
     let shape = mesh::generate::Cage {
@@ -303,11 +297,17 @@ pub(crate) fn flexible(
     let [inner, outer] = contacts.ring;
     let volume = PI * (outer * outer - inner * inner) * contacts.length - pockets;
     let order = count(reader, "order", 2);
+    let counts =
+        [("quarter", cells.quarter), ("bar", cells.bar), ("wall", cells.wall), ("order", order)];
+    for (key, count) in counts {
+        reader.follow(&format!("bearing.cage.mesh.{key}"), count as f64);
+    }
+    reader.follow("bearing.cage.contact.at", "nodes");
     let mut given = |key: &str, usual: f64, shown: &str, reason: &str| {
         let path = format!("bearing.cage.{key}");
         reader.given_number(&path).unwrap_or_else(|| {
             if reduced || (flexible && key != "modes_to") {
-                reader.note(&path, shown, reason);
+                reader.note(&path, shown, reason).fill(&path, usual);
             }
             usual
         })
@@ -321,6 +321,9 @@ pub(crate) fn flexible(
         Some(Checked::Boolean(given)) => *given,
         _ => true,
     };
+    if reduced {
+        reader.follow("bearing.cage.corrections", corrections);
+    }
     let penalty = match (per_area, contacts.force) {
         (Some(stiffness), _) => Penalty::PerArea(stiffness),
         (None, CageForce::Penalty { stiffness } | CageForce::Hertz { stiffness }) => {
@@ -392,13 +395,15 @@ fn force(reader: &mut Reader) -> Result<Option<CageForce>, SceneError> {
         // A stiffness per area is for nodes, see `flexible`.
         (Some(Checked::Either(2, _)), false) => Ok(None),
         (Some(_), _) => {
-            let (reason, example) = if hertz {
-                ("`hertz` takes a stiffness in N/m^1.5", "1e10 N/m^1.5")
-            } else {
-                ("`penalty` takes a stiffness in N/m", "2e8 N/m")
+            let reason = match hertz {
+                true => {
+                    "`hertz` takes a stiffness in N/m^1.5. Hint: write stiffness = \"1e10 N/m^1.5\", or choose the other law"
+                }
+                false => {
+                    "`penalty` takes a stiffness in N/m. Hint: write stiffness = \"2e8 N/m\", or choose the other law"
+                }
             };
-            let advice = format!("write stiffness = \"{example}\", or choose the other law");
-            Err(reader.document.refused(path, reason, advice))
+            Err(reader.document.refused(path, reason))
         }
     }
 }
@@ -420,6 +425,6 @@ fn pocket_pitch(reader: &Reader, geometry: &BearingGeometry) -> Result<Option<f6
         ("less than", "the pitch radius plus a ball radius", high)
     };
     let advice = "leave it out; the pockets are then on the pitch circle";
-    let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
+    let problem = Problem::order(value, relation, (other_name, other), advice);
     Err(reader.document.error(path, problem))
 }

@@ -4,43 +4,11 @@ use crate::ch2_housing::bearing::contact::ContactDamping;
 use crate::ch2_housing::bearing::traction::{ExponentialCurve, TractionLaw};
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::Reader;
+use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 
-/// Keys of some laws only.
-const TRACTION_KEYS: &[(&str, &[&str])] = &[
-    ("traction.coefficient", &["constant"]),
-    ("traction.regularisation_speed", &["constant"]),
-    ("traction.b", &["slide-to-roll", "slip-speed"]),
-    ("traction.c", &["slide-to-roll", "slip-speed"]),
-    ("traction.d", &["slide-to-roll", "slip-speed"]),
-    ("traction.entrainment_floor", &["slide-to-roll"]),
-];
-const DAMPING_KEYS: &[(&str, &[&str])] = &[("contact_damping.alpha", &["hunt-crossley"])];
-
-/// Refuses keys of another law or method than the chosen one.
-pub(crate) fn refuse_without_effect_on(
-    reader: &Reader,
-    (what, chosen): (&str, &str),
-    keys: &[(&str, &[&str])],
-) -> Result<(), SceneError> {
-    for (key, users) in keys {
-        if chosen != "none" && reader.is_given(key) && !users.contains(&chosen) {
-            let own = users.iter().map(|user| format!("`{what} = \"{user}\"`"));
-            let own: Vec<String> = own.collect();
-            let advice = format!("leave it out, or choose {}", own.join(" or "));
-            let reason = match what {
-                "law" => "the chosen law does not use it",
-                _ => "the chosen method does not use it",
-            };
-            return Err(reader.document.refused(key, reason, advice));
-        }
-    }
-    Ok(())
-}
-
 pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
-    let law = reader.choice("traction.law").unwrap_or("slide-to-roll");
-    refuse_without_effect_on(reader, ("law", law), TRACTION_KEYS)?;
+    let law = reader.choice("traction.law");
     let because = format!(" with `law = \"{law}\"`");
     Ok(match law {
         "constant" => TractionLaw::Constant {
@@ -55,7 +23,7 @@ pub(crate) fn traction(reader: &mut Reader) -> Result<TractionLaw, SceneError> {
                 "this curve is over the slide-to-roll ratio, a plain number",
                 "22.28",
             )?,
-            entrainment_floor: reader.number("traction.entrainment_floor").unwrap_or(0.01),
+            entrainment_floor: reader.number("traction.entrainment_floor"),
         },
         "slip-speed" => TractionLaw::SlipSpeed {
             curve: curve(reader, 1, "this curve is over the sliding speed, in s/m", "\"20 s/m\"")?,
@@ -79,8 +47,8 @@ fn curve(
             Some(Checked::Either(index, given)) if *index == kind => *value = *given,
             Some(_) => {
                 let name = path.rsplit('.').next().unwrap_or(path);
-                let advice = format!("write {name} = {example}");
-                return Err(reader.document.refused(path, unit, advice));
+                let reason = format!("{unit}. Hint: write {name} = {example}");
+                return Err(reader.document.refused(path, reason));
             }
             None if kind == 1 => {
                 return Err(
@@ -89,7 +57,8 @@ fn curve(
             }
             None => {
                 let reason = "common boundary-lubrication set; the source's curve is not printed";
-                reader.note(path, &crate::scene::text::units::plain(*value), reason);
+                let value = *value;
+                reader.note(path, &plain(value), reason).fill(path, value);
             }
         }
     }
@@ -100,13 +69,15 @@ fn curve(
     if peak <= 2.0 {
         Ok(curve)
     } else {
-        Err(reader.document.error("traction.b", Problem::FrictionTooLarge { peak }))
+        let problem = Problem::Contradiction(format!(
+            "the friction curve rises to {peak:.3}. Allowed: up to 2. Hint: the rise `b` is too large for the decay `c`"
+        ));
+        Err(reader.document.error("traction.b", problem))
     }
 }
 
 pub(crate) fn damping(reader: &mut Reader) -> Result<ContactDamping, SceneError> {
-    let law = reader.choice("contact_damping.law").unwrap_or("none");
-    refuse_without_effect_on(reader, ("law", law), DAMPING_KEYS)?;
+    let law = reader.choice("contact_damping.law");
     let because = format!(" with `law = \"{law}\"`");
     Ok(match law {
         "hunt-crossley" => ContactDamping::HuntCrossley {
@@ -133,5 +104,5 @@ pub(crate) fn ball_friction(
     if given.is_none() {
         reader.note_default("ball_contact.law");
     }
-    Ok(Some([reader.number(friction).unwrap_or(0.1), reader.number(speed).unwrap_or(0.01)]))
+    Ok(Some([reader.number(friction), reader.number(speed)]))
 }

@@ -64,9 +64,9 @@ pub(crate) fn dynamics(
         unbalance,
         traction: contact::traction(reader)?,
         // Checked by the key table: 1 to 201.
-        slices: reader.number("traction.slices").unwrap_or(15.0) as usize,
+        slices: reader.number("traction.slices") as usize,
         // 1 to 9.
-        points_across: reader.number("traction.points_across").unwrap_or(1.0) as usize,
+        points_across: reader.number("traction.points_across") as usize,
         differential_sliding: reader.boolean("traction.differential_sliding"),
         damping: contact::damping(reader)?,
         ball_friction: contact::ball_friction(reader, balls_meet)?,
@@ -85,7 +85,7 @@ pub(crate) fn rotation(reader: &mut Reader, table: &str) -> Rotation {
     }
     let speed = format!("{table}.speed");
     Rotation::Speed(reader.profile(&speed).unwrap_or_else(|| {
-        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given");
+        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given").fill(&speed, 0.0);
         Profile::ZERO
     }))
 }
@@ -113,15 +113,11 @@ pub(crate) fn rotating_load(
     let Some(turning) = reader.profile(speed) else {
         return Err(reader.missing(speed, ""));
     };
-    Ok(Some(RotatingLoad {
-        force: profile,
-        speed: turning,
-        phase: reader.number(phase).unwrap_or(0.0),
-    }))
+    Ok(Some(RotatingLoad { force: profile, speed: turning, phase: reader.number(phase) }))
 }
 
 fn outer_race(reader: &mut Reader, parts: &Parts) -> Result<Option<DrivenBody>, SceneError> {
-    let motion = reader.choice("outer_race.motion").unwrap_or("fixed");
+    let motion = reader.choice("outer_race.motion");
     if motion == "fixed" {
         refuse_motion(reader)?;
         return Ok(None);
@@ -134,53 +130,36 @@ fn outer_race(reader: &mut Reader, parts: &Parts) -> Result<Option<DrivenBody>, 
     Ok(Some(DrivenBody {
         inertia: race_inertia(reader, parts, &OUTER)?,
         drives: reader.drives("outer_race", parts.geometry.ball_radius)?,
-        rotation: outer_rotation(reader, motion)?,
+        rotation: match motion {
+            "5-dof" => Rotation::Speed(reader.profile("outer_race.speed").unwrap_or(Profile::ZERO)),
+            _ => Rotation::Torque(reader.profile("outer_race.torque").unwrap_or(Profile::ZERO)),
+        },
         foundation_stiffness,
         foundation_damping,
     }))
 }
 
-/// Rotation of the outer race: prescribed for five coordinates, by torque for six.
-fn outer_rotation(reader: &Reader, motion: &str) -> Result<Rotation, SceneError> {
-    let (own, other) = match motion {
-        "5-dof" => ("outer_race.speed", "outer_race.torque"),
-        _ => ("outer_race.torque", "outer_race.speed"),
-    };
-    if reader.is_given(other) {
-        let reason = "6-dof is turned by a torque, 5-dof at a speed";
-        let advice =
-            format!("write {} instead, or the other motion", own.replace("outer_race.", ""));
-        return Err(reader.document.refused(other, reason, advice));
-    }
-    let profile = reader.profile(own).unwrap_or(Profile::ZERO);
-    Ok(if motion == "5-dof" { Rotation::Speed(profile) } else { Rotation::Torque(profile) })
-}
-
-/// Refuses keys without effect on a fixed race.
+/// Refuses prescribed motions of a fixed race.
 fn refuse_motion(reader: &Reader) -> Result<(), SceneError> {
-    let mut keys = Vec::new();
-    for name in COORDINATE_NAMES {
-        let (load, held) =
-            if name.starts_with("tilt") { ("moment", "tilt") } else { ("load", "displacement") };
-        keys.push(format!("outer_race.{name}.{load}"));
-        let held = format!("outer_race.{name}.{held}");
-        if matches!(reader.document.value(&held), Some(Checked::Profile(_))) {
-            keys.push(held);
-        }
-        keys.push(format!("outer_race.foundation.stiffness.{name}"));
-        keys.push(format!("outer_race.foundation.damping.{name}"));
-    }
-    for name in ["speed", "torque", "inertia.mass", "inertia.axial", "inertia.transverse"] {
-        keys.push(format!("outer_race.{name}"));
-    }
-    match keys.iter().find(|key| reader.is_given(key)) {
+    let keys = COORDINATE_NAMES.map(|name| drive_key("outer_race", name, false));
+    let moves = |key: &&String| matches!(reader.document.value(key), Some(Checked::Profile(_)));
+    match keys.iter().find(moves) {
         None => Ok(()),
         Some(key) => {
-            let reason = "the outer race is fixed";
-            let advice = "write motion = \"5-dof\" in [outer_race], or leave this out";
-            Err(reader.document.refused(key, reason, advice))
+            Err(reader.document.refused(key, "the outer race is fixed. Hint: write motion = \"5-dof\" in [outer_race], or leave this out"))
         }
     }
+}
+
+/// Key of the load, or of the prescribed motion, along a coordinate.
+pub(crate) fn drive_key(table: &str, coordinate: &str, load: bool) -> String {
+    let key = match (coordinate.starts_with("tilt"), load) {
+        (true, true) => "moment",
+        (true, false) => "tilt",
+        (false, true) => "load",
+        (false, false) => "displacement",
+    };
+    format!("{table}.{coordinate}.{key}")
 }
 
 /// Keys of a race, and the side of its material.
@@ -267,7 +246,12 @@ fn race_inertia(reader: &mut Reader, parts: &Parts, side: &Side) -> Result<Inert
         "mass {:.4e} kg, axial {:.4e} kg m^2, transverse {:.4e} kg m^2",
         ring.mass, ring.axial, ring.transverse
     );
-    reader.note(&format!("{}.inertia", side.table), &value, "a grooved ring of the race's sizes");
+    let [mass, axial, transverse] = &keys;
+    reader
+        .note(&format!("{}.inertia", side.table), &value, "a grooved ring of the race's sizes")
+        .fill(mass, ring.mass)
+        .fill(axial, ring.axial)
+        .fill(transverse, ring.transverse);
     Ok(Inertia { mass: ring.mass + added, ..ring })
 }
 
@@ -290,7 +274,7 @@ fn shoulder(
     let pitch = parts.geometry.pitch_radius;
     let order = |relation, other_name, other| {
         let advice = "a shoulder is beside the groove, lower than the balls' centres";
-        let problem = Problem::WrongOrder { value, relation, other_name, other, advice };
+        let problem = Problem::order(value, relation, (other_name, other), advice);
         Err(reader.document.error(key, problem))
     };
     let (past_bottom, past_pitch) =
@@ -309,7 +293,11 @@ fn shoulder(
 pub(crate) fn check_inertia(axial: f64, transverse: f64) -> Result<(), Problem> {
     match axial <= 2.0 * transverse * (1.0 + 1e-9) {
         true => Ok(()),
-        false => Err(Problem::ImpossibleInertia { axial, transverse }),
+        false => Err(Problem::Contradiction(format!(
+            "a moment of inertia of {axial} kg m^2 about the axis is more than twice that across it ({transverse} kg m^2), which \
+             is impossible for a rigid body. Allowed: up to {} kg m^2. Hint: were the two exchanged?",
+            2.0 * transverse
+        ))),
     }
 }
 
@@ -320,7 +308,11 @@ pub(crate) fn check_unbalance(race: &DrivenBody, unbalance: f64) -> Result<(), P
     let given = matches!(race.rotation, Rotation::Speed(_)) || mass == 0.0;
     match given || unbalance * unbalance < mass * axial {
         true => Ok(()),
-        false => Err(Problem::ImpossibleUnbalance { unbalance, mass, axial }),
+        false => Err(Problem::Contradiction(format!(
+            "an unbalance of {unbalance} kg m is impossible for a torque-driven body of {mass} kg with an axial moment of inertia \
+             of {axial} kg m^2. Allowed: less than {:.4e} kg m, the square root of their product. Hint: check the units",
+            (mass * axial).sqrt()
+        ))),
     }
 }
 
@@ -339,7 +331,7 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
     };
     let usual = RunOptions::default();
     let start = match reader.choice("numerics.start") {
-        Some("nominal") => Start::Nominal,
+        "nominal" => Start::Nominal,
         _ => Start::Equilibrium,
     };
     let Steps { integrator, stepping, by_plan } = steps(reader)?;
@@ -353,21 +345,19 @@ fn run(reader: &mut Reader) -> Result<Option<RunSettings>, SceneError> {
                  "error control bounds the motion; long steps resolve the work of a prescribed speed less accurately",
             ),
         };
-        reader.note("numerics.energy_limit", &plain(limit), reason);
-        limit
+        reader.number_or("numerics.energy_limit", limit, &plain(limit), reason)
     });
     let options = RunOptions { start, integrator, stepping, energy_limit, ..usual };
     let output_interval = within(reader, "numerics.output_interval", end)?.unwrap_or_else(|| {
         let interval = end / 1000.0;
         let value = format!("{} s", plain(interval));
-        reader.note("numerics.output_interval", &value, "a thousandth of the run");
-        interval
+        let reason = "a thousandth of the run";
+        reader.number_or("numerics.output_interval", interval, &value, reason)
     });
     let window_start = within(reader, "output.window_start", end)?.unwrap_or_else(|| {
         let start = 0.5 * end;
         let reason = "means and spectra are taken over the second half of the run";
-        reader.note("output.window_start", &format!("{} s", plain(start)), reason);
-        start
+        reader.number_or("output.window_start", start, &format!("{} s", plain(start)), reason)
     });
     let channels = match reader.document.value("output.channels") {
         Some(Checked::Choices(names)) => {
@@ -419,25 +409,21 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
                 true => "a housing in explicit steps limits them",
                 false => "prescribed steps, as in the source",
             };
-            reader.note("numerics.integrator", "rk4", reason);
+            reader.choice_or("numerics.integrator", "rk4", reason);
             Integrator::RungeKutta
         }
         // Until the plan has chosen.
         None => Integrator::Rosenbrock,
     };
     let estimates = integrator != Integrator::RungeKutta;
-    let refuse =
-        |key: &str, reason, advice: &str| Err(reader.document.refused(key, reason, advice));
+    let refuse = |key: &str, reason: &str| Err(reader.document.refused(key, reason));
     if accuracy.is_some() && !estimates {
-        let reason = "the integrator rk4 has no estimate of its error";
-        let advice =
-            "leave the integrator out, write \"rosenbrock\" or \"dormand-prince\", or give a step";
-        return refuse("numerics.accuracy", reason, advice);
+        let reason = "the integrator rk4 has no estimate of its error. Hint: leave the integrator out, write \"rosenbrock\" or \"dormand-prince\", or give a step";
+        return refuse("numerics.accuracy", reason);
     }
     if fraction.is_some() && estimates {
-        let reason = "the stability limit is that of rk4";
-        let advice = "give accuracy or step instead, or write integrator = \"rk4\"";
-        return refuse("numerics.step_fraction", reason, advice);
+        let reason = "the stability limit is that of rk4. Hint: give accuracy or step instead, or write integrator = \"rk4\"";
+        return refuse("numerics.step_fraction", reason);
     }
     let stepping = match (step, fraction, accuracy) {
         (Some(step), _, _) => Stepping::Fixed(step),
@@ -445,27 +431,25 @@ fn steps(reader: &mut Reader) -> Result<Steps, SceneError> {
         (_, _, Some(accuracy)) => Stepping::Accuracy(accuracy),
         _ if estimates => {
             let reason = "error in the races' motion of a thousandth of the largest overlap";
-            reader.note("numerics.accuracy", "0.001", reason);
-            Stepping::Accuracy(1e-3)
+            Stepping::Accuracy(reader.number_or("numerics.accuracy", 1e-3, "0.001", reason))
         }
         _ => {
-            reader.note("numerics.step_fraction", "0.5", "half the largest stable step");
-            Stepping::FractionOfLimit(0.5)
+            let reason = "half the largest stable step";
+            let fraction = reader.number_or("numerics.step_fraction", 0.5, "0.5", reason);
+            Stepping::FractionOfLimit(fraction)
         }
     };
     Ok(Steps { integrator, stepping, by_plan })
 }
 
 /// A time within the run; a window must begin before the end.
-fn within(reader: &Reader, key: &str, end: f64) -> Result<Option<f64>, SceneError> {
-    let Some(value) = reader.given_number(key) else { return Ok(None) };
-    let (relation, allowed) =
-        if key == "output.window_start" { ("not before", "less than") } else { ("after", "up to") };
-    if value < end || (value == end && allowed == "up to") {
-        return Ok(Some(value));
+pub(crate) fn within(reader: &Reader, key: &str, end: f64) -> Result<Option<f64>, SceneError> {
+    let may_be_equal = key != "output.window_start";
+    match reader.given_number(key) {
+        Some(value) if value > end || (value == end && !may_be_equal) => {
+            let problem = Problem::after_the_end(value, end, may_be_equal);
+            Err(reader.document.error(key, problem))
+        }
+        given => Ok(given),
     }
-    let (other_name, other) = ("the end of the run", end);
-    let advice = "check the units of both";
-    let problem = Problem::WrongTime { value, relation, other_name, other, allowed, advice };
-    Err(reader.document.error(key, problem))
 }

@@ -6,7 +6,7 @@
 use crate::ch2_housing::bearing::geometry::{
     BearingGeometry, BearingKind, ClearanceThrough, Raceway,
 };
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::{Problem, SceneError, mm, um};
 use crate::scene::resolve::bearing::Reader;
 use crate::scene::resolve::resolved::{Dimensions, RaceDimensions};
 
@@ -42,9 +42,8 @@ pub(crate) fn geometry(
         contact_angle: sizes.contact_angle,
         radial_clearance: sizes.clearance,
     };
-    let race = |radius: f64, raceway: &Raceway, path: &str| RaceDimensions {
+    let race = |radius: f64, raceway: &Raceway| RaceDimensions {
         radius,
-        nominal_radius: reader.given_number(path),
         groove_radius: raceway.groove_radius,
         conformity: raceway.groove_radius / (2.0 * sizes.nominal_ball),
         osculation: sizes.nominal_ball / raceway.groove_radius,
@@ -54,8 +53,8 @@ pub(crate) fn geometry(
         clearance_through: sizes.through,
         radial_clearance: sizes.clearance,
         diametral_clearance: 2.0 * sizes.clearance,
-        inner_race: race(sizes.inner_radius, &sizes.inner, INNER),
-        outer_race: race(sizes.outer_radius, &sizes.outer, OUTER),
+        inner_race: race(sizes.inner_radius, &sizes.inner),
+        outer_race: race(sizes.outer_radius, &sizes.outer),
         bore_radius: reader.given_number("bearing.inner_race.bore_radius"),
         outer_radius: reader.given_number("bearing.outer_race.outer_radius"),
         length: reader.given_number("bearing.length"),
@@ -134,19 +133,20 @@ fn groove(reader: &Reader, race: &str, ball: f64, nominal: f64) -> Result<f64, S
     if radius > largest_ball && radius <= 1.2 * ball {
         Ok(radius)
     } else {
-        let problem = Problem::GrooveDoesNotFit { groove: radius, ball: largest_ball };
-        Err(reader.document.error(key, problem))
+        let (groove, ball) = (mm(radius), mm(largest_ball));
+        contradiction(
+            reader,
+            key,
+            format!(
+                "the groove radius {groove} does not fit a ball radius of {ball}. Allowed: more than {ball} to {}. Hint: a groove \
+             radius is 1.01 to 1.08 times the ball radius; was a diameter given?",
+                mm(1.2 * largest_ball)
+            ),
+        )
     }
 }
 
 fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
-    if reader.is_given("bearing.contact_angle") {
-        return Err(reader.document.refused(
-            "bearing.contact_angle",
-            "in a deep-groove bearing the contact angle emerges from the loads",
-            "leave it out, or set kind = \"angular-contact\"",
-        ));
-    }
     let through = deep_groove_through(reader)?;
     let (ball_given, clearance_given) = (given_ball(reader), given_clearance(reader));
     let (mut inner_given, mut outer_given) =
@@ -162,7 +162,15 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     if let (Some(inner), Some(outer)) = (inner_given, outer_given)
         && outer <= inner
     {
-        return Err(reader.document.error(OUTER, Problem::RacesOverlap { inner, outer }));
+        let (inner, outer) = (mm(inner), mm(outer));
+        return contradiction(
+            reader,
+            OUTER,
+            format!(
+                "the groove bottom of the outer race ({outer}) is not outside that of the inner race ({inner}). Allowed: outer \
+             radius more than {inner}. Hint: the radii are measured from the bearing axis; were they exchanged?"
+            ),
+        );
     }
     let need = |path: &str, because: &str| match path {
         INNER if inner_given.is_some() => Ok(inner_given.unwrap_or_default()),
@@ -194,8 +202,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             outer = need(OUTER, because)?;
             ball = 0.5 * (outer - inner - clearance);
             if ball <= 0.0 {
-                let problem = Problem::NoRoomForBall { gap: outer - inner, clearance };
-                return Err(reader.document.error(clearance_key(reader), problem));
+                return no_room(reader, clearance_key(reader), outer - inner, clearance);
             }
         }
         (Some(given), ClearanceThrough::InnerRace) => {
@@ -205,8 +212,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             ball = need_ball(because)?;
             inner = outer - 2.0 * ball - clearance;
             if inner <= 0.0 {
-                let problem = Problem::NoRoomForBall { gap: outer, clearance };
-                return Err(reader.document.error(ball_key(reader), problem));
+                return no_room(reader, ball_key(reader), outer, clearance);
             }
         }
         (Some(given), ClearanceThrough::OuterRace) => {
@@ -224,8 +230,7 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
             inner = middle - ball - 0.5 * clearance;
             outer = middle + ball + 0.5 * clearance;
             if inner <= 0.0 {
-                let problem = Problem::NoRoomForBall { gap: middle, clearance };
-                return Err(reader.document.error(ball_key(reader), problem));
+                return no_room(reader, ball_key(reader), middle, clearance);
             }
         }
     }
@@ -240,8 +245,18 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
         let nominal = nominal.unwrap_or(derived);
         let allowed = clearance.abs() + ROUNDED * ball;
         if !((nominal - derived).abs() <= allowed) {
-            let problem = Problem::NominalFarOff { nominal, derived, allowed };
-            return Err(reader.document.error(key, problem));
+            return contradiction(
+                reader,
+                key,
+                format!(
+                    "the nominal size {} differs from the {} that follows from the other sizes and the clearance. Allowed: \
+                     {} to {}. Hint: check it, or leave it out so that it follows",
+                    mm(nominal),
+                    mm(derived),
+                    mm(derived - allowed),
+                    mm(derived + allowed)
+                ),
+            );
         }
     }
     let nominal_ball = ball_given.unwrap_or(ball);
@@ -252,9 +267,21 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     let (half_way, slack) = (0.5 * (inner + outer), 0.05 * ball);
     let (least, most) = (half_way - slack, half_way + slack);
     if !(least..=most).contains(&pitch) {
-        let problem = Problem::PitchOutsideGap { pitch, inner: least, outer: most };
-        return Err(reader.document.error("bearing.pitch_radius", problem));
+        return contradiction(
+            reader,
+            "bearing.pitch_radius",
+            format!(
+                "the pitch radius {} is not half way between the races. Allowed: {} to {}. Hint: leave it out to place it half way",
+                mm(pitch),
+                mm(least),
+                mm(most)
+            ),
+        );
     }
+    reader.follow(INNER, inner_given.unwrap_or(inner));
+    reader.follow(OUTER, outer_given.unwrap_or(outer));
+    reader.follow("bearing.ball.radius", nominal_ball);
+    reader.follow("bearing.pitch_radius", pitch);
     let raceway = |centre_radius: f64, groove_radius: f64| Raceway {
         centre_radius,
         centre_axial: 0.0,
@@ -287,45 +314,29 @@ fn deep_groove_through(reader: &mut Reader) -> Result<ClearanceThrough, SceneErr
         (true, true, false, true) => ("outer-race", "the outer race is the part without a radius"),
         (true, true, true, false) => ("ball", "the ball is the part without a size"),
         (true, ..) => {
-            return Ok(reader.choice(THROUGH).map_or(ClearanceThrough::Ball, through_of));
+            return Ok(through_of(reader.choice(THROUGH)));
         }
         // With all radii the clearance follows.
         (false, ..) => return Ok(ClearanceThrough::Ball),
     };
-    reader.note(THROUGH, word, reason);
-    Ok(through_of(word))
+    Ok(through_of(reader.choice_or(THROUGH, word, reason)))
 }
 
 fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
-    for path in [INNER, OUTER] {
-        if reader.is_given(path) {
-            return Err(reader.document.refused(path,
-                "in an angular-contact bearing it follows from pitch radius, ball, groove and angle",
-                "leave it out, or set kind = \"deep-groove\"",
-            ));
-        }
-    }
     let because = " (an angular-contact bearing needs it)";
     let pitch = reader.required_number("bearing.pitch_radius", because)?;
     let angle = reader.required_number("bearing.contact_angle", because)?;
     let Some(nominal) = given_ball(reader) else {
         return Err(reader.missing("bearing.ball.radius", because));
     };
-    let clearance = match given_clearance(reader) {
-        Some(clearance) => clearance,
-        None => {
-            reader.note(
-                "bearing.clearance.radial",
-                "0 um",
-                "the parts just touch at the contact angle",
-            );
-            0.0
-        }
-    };
+    let clearance = given_clearance(reader).unwrap_or_else(|| {
+        let reason = "the parts just touch at the contact angle";
+        reader.number_or("bearing.clearance.radial", 0.0, "0 um", reason)
+    });
     let through = if clearance == 0.0 && !reader.is_given(THROUGH) {
         ClearanceThrough::Ball
     } else {
-        reader.choice(THROUGH).map_or(ClearanceThrough::Ball, through_of)
+        through_of(reader.choice(THROUGH))
     };
     let advice = "check its unit and whether it is radial";
     limit_clearance(reader, clearance_key(reader), "", clearance, nominal, advice)?;
@@ -338,8 +349,15 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
     // Beyond this the groove centres pass each other and the gap opens again.
     let least = -centre_distance * libm::cos(angle);
     if clearance <= least {
-        let problem = Problem::InterferenceTooLarge { clearance, least };
-        return Err(reader.document.error(clearance_key(reader), problem));
+        return contradiction(
+            reader,
+            clearance_key(reader),
+            format!(
+                "the clearance {} is smaller than the contact angle allows. Allowed: more than {}. Hint: check its unit and sign",
+                um(clearance),
+                um(least)
+            ),
+        );
     }
     // The sizes do not depend on the number of balls; it is checked against them later.
     let touching =
@@ -362,13 +380,10 @@ fn angular_contact(reader: &mut Reader) -> Result<Sizes, SceneError> {
         through,
     };
     if !(sizes.inner_radius > 0.0 && sizes.outer.centre_radius > 0.0) {
-        let problem = Problem::WrongOrder {
-            value: pitch,
-            relation: "more than",
-            other_name: "the smallest for this ball and groove",
-            other: pitch - sizes.inner_radius.min(sizes.outer.centre_radius),
-            advice: "check the pitch radius and the ball",
-        };
+        let least = pitch - sizes.inner_radius.min(sizes.outer.centre_radius);
+        let other = ("the smallest for this ball and groove", least);
+        let problem =
+            Problem::order(pitch, "more than", other, "check the pitch radius and the ball");
         return Err(reader.document.error("bearing.pitch_radius", problem));
     }
     Ok(sizes)
@@ -385,8 +400,18 @@ fn limit_clearance(
     if clearance.abs() <= LARGEST_CLEARANCE * ball_radius {
         return Ok(());
     }
-    let problem = Problem::ClearanceTooLarge { what, clearance, ball_radius, advice };
-    Err(reader.document.error(key, problem))
+    let limit = LARGEST_CLEARANCE * ball_radius;
+    contradiction(
+        reader,
+        key,
+        format!(
+            "{what}radial clearance {} is beyond 5 % of the ball radius ({}). Allowed: {} to {}. Hint: {advice}",
+            um(clearance),
+            mm(ball_radius),
+            um(-limit),
+            um(limit)
+        ),
+    )
 }
 
 /// Neighbouring ball centres are 2 R_pitch sin(π/Z) apart, which must exceed a ball diameter.
@@ -397,32 +422,47 @@ fn check_ball_count(reader: &Reader, count: usize, sizes: &Sizes) -> Result<(), 
         return Ok(());
     }
     let largest = (1..count).rev().find(|&count| fits(count)).unwrap_or(0);
-    let problem = Problem::BallsDoNotFit { count, largest, ball: sizes.ball, pitch: sizes.pitch };
-    Err(reader.document.error("bearing.balls", problem))
+    contradiction(
+        reader,
+        "bearing.balls",
+        format!(
+            "{count} balls of radius {} do not fit on a pitch radius of {}. Allowed: up to {largest} balls. Hint: fewer or smaller \
+         balls, or check the races' radii",
+            mm(sizes.ball),
+            mm(sizes.pitch)
+        ),
+    )
 }
 
 fn check_bore(reader: &Reader, sizes: &Sizes) -> Result<(), SceneError> {
-    let bore = reader.given_number("bearing.inner_race.bore_radius");
-    if let Some(value) = bore.filter(|bore| *bore >= sizes.inner_radius) {
-        let problem = Problem::WrongOrder {
-            value,
-            relation: "less than",
-            other_name: "the groove bottom's radius",
-            other: sizes.inner_radius,
-            advice: "was a diameter given?",
-        };
-        return Err(reader.document.error("bearing.inner_race.bore_radius", problem));
+    const GROOVE: &str = "the groove bottom's radius";
+    let [bore, rim] = ["bearing.inner_race.bore_radius", "bearing.outer_race.outer_radius"];
+    if let Some(value) = reader.given_number(bore).filter(|bore| *bore >= sizes.inner_radius) {
+        let other = (GROOVE, sizes.inner_radius);
+        let problem = Problem::order(value, "less than", other, "was a diameter given?");
+        return Err(reader.document.error(bore, problem));
     }
-    let rim = reader.given_number("bearing.outer_race.outer_radius");
-    if let Some(value) = rim.filter(|rim| *rim <= sizes.outer_radius) {
-        let problem = Problem::WrongOrder {
-            value,
-            relation: "more than",
-            other_name: "the groove bottom's radius",
-            other: sizes.outer_radius,
-            advice: "the race surrounds its groove",
-        };
-        return Err(reader.document.error("bearing.outer_race.outer_radius", problem));
+    if let Some(value) = reader.given_number(rim).filter(|rim| *rim <= sizes.outer_radius) {
+        let other = (GROOVE, sizes.outer_radius);
+        let problem = Problem::order(value, "more than", other, "the race surrounds its groove");
+        return Err(reader.document.error(rim, problem));
     }
     Ok(())
+}
+
+fn contradiction<T>(reader: &Reader, key: &str, text: String) -> Result<T, SceneError> {
+    Err(reader.document.error(key, Problem::Contradiction(text)))
+}
+
+fn no_room<T>(reader: &Reader, key: &str, gap: f64, clearance: f64) -> Result<T, SceneError> {
+    contradiction(
+        reader,
+        key,
+        format!(
+            "the gap between the races ({}) leaves no room for a ball at a radial clearance of {}. Allowed: clearance less than the \
+         gap. Hint: check the unit of the clearance",
+            mm(gap),
+            um(clearance)
+        ),
+    )
 }

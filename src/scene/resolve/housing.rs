@@ -1,18 +1,20 @@
 //! From the given keys to a bearing in a housing: defaults, and checks between keys.
 
 use crate::ch2_housing::bore_contact::Penalty;
-use crate::ch4_rotor::bore_friction::{BoreFriction, COEFFICIENT, STRETCH};
+use crate::ch4_rotor::bore_friction::BoreFriction;
 use crate::equilibrium::statics::COORDINATE_NAMES;
 use crate::members::body::{Drive, DrivenBody, Rotation};
 use crate::motion::simulation::Start;
 use crate::numeric::profile::Profile;
 use crate::plan::channels::ChannelGroup;
 use crate::scene::build::assembly::PlacedHousing;
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::{Problem, SceneError, um};
 use crate::scene::resolve::bearing::{Reader, resolve_bearing, text};
+use crate::scene::resolve::dynamics::drive_key;
 use crate::scene::resolve::housing_scene::{FitSize, HousingMethod, HousingSettings};
 use crate::scene::resolve::resolved::{Plot, RunPlot, Scene};
 use crate::scene::resolve::solid::housing_solid;
+use crate::scene::resolve::unused::refuse_unused;
 use crate::scene::text::document::{Assumption, Document};
 use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
@@ -31,7 +33,7 @@ pub(crate) fn in_housing(
 ) -> Result<(Scene, Option<PlacedHousing>), SceneError> {
     let mut bearing = resolve_bearing(document)?;
     let mut reader = Reader::new(document);
-    let method = reader.choice("housing.method").unwrap_or("quasi-static");
+    let method = reader.choice("housing.method");
     if method == "rigid" {
         // Errors in it are reported for every method.
         if document.first_below("solid").is_some() {
@@ -47,6 +49,7 @@ pub(crate) fn in_housing(
         });
         return Ok((bearing, None));
     }
+    refuse_unused(document, &["housing"])?;
     let method = match method {
         "explicit" => HousingMethod::Explicit,
         "reduced" => HousingMethod::Reduced,
@@ -75,13 +78,8 @@ pub(crate) fn in_housing(
     Ok((bearing, Some(PlacedHousing { settings, solid })))
 }
 
-fn not_applicable<T>(
-    document: &Document,
-    key: &str,
-    reason: &'static str,
-    advice: &str,
-) -> Result<T, SceneError> {
-    Err(document.refused(key, reason, advice))
+fn refused<T>(document: &Document, key: &str, reason: &str) -> Result<T, SceneError> {
+    Err(document.refused(key, reason))
 }
 
 /// Friction of the bore; `None` without any, or with a coefficient of zero.
@@ -92,20 +90,14 @@ fn friction(
     let [law, coefficient, stretch] =
         ["law", "coefficient", "stretch"].map(|key| format!("housing.friction.{key}"));
     if reader.choice_if_given(&law) != Some("stick-slip") {
-        let Some(key) = [coefficient, stretch].into_iter().find(|key| reader.is_given(key)) else {
-            return Ok(None);
-        };
-        let reason = "without a law the bore is smooth";
-        let advice = "add law = \"stick-slip\", or leave it out";
-        return not_applicable(reader.document, &key, reason, advice);
+        return Ok(None);
     }
     if method != HousingMethod::Explicit {
-        let reason = "the springs of friction have a history, which needs the steps of `explicit`";
-        let advice = "leave `friction` out, or write method = \"explicit\"";
-        return not_applicable(reader.document, &law, reason, advice);
+        let reason = "the springs of friction have a history, which needs the steps of `explicit`. Hint: leave `friction` out, or write method = \"explicit\"";
+        return refused(reader.document, &law, reason);
     }
-    let coefficient = reader.number(&coefficient).unwrap_or(COEFFICIENT);
-    let stretch = reader.number(&stretch).unwrap_or(STRETCH);
+    let coefficient = reader.number(&coefficient);
+    let stretch = reader.number(&stretch);
     Ok((coefficient != 0.0).then_some(BoreFriction { coefficient, stretch }))
 }
 
@@ -116,70 +108,48 @@ fn refuse_motion(document: &Document, reader: &Reader, rough: bool) -> Result<()
         Some("5-dof") => {}
         Some("6-dof") if rough => {}
         Some("6-dof") => {
-            let reason = "the bore has no friction, so nothing would keep the race from turning";
-            let advice = "write motion = \"5-dof\", or friction.law = \"stick-slip\" in [housing]";
-            return not_applicable(document, key, reason, advice);
+            let reason = "the bore has no friction, so nothing would keep the race from turning. Hint: write motion = \"5-dof\", or friction.law = \"stick-slip\" in [housing]";
+            return refused(document, key, reason);
         }
         _ => {
-            let reason = "a fixed outer race does not move in its housing";
             let [race, housing] =
                 ["outer_race", "housing"].map(|table| document.shown(table, true));
-            let advice = format!(
-                "write motion = \"5-dof\" in [{race}], or method = \"rigid\" in [{housing}]"
+            let reason = format!(
+                "a fixed outer race does not move in its housing. Hint: write motion = \"5-dof\" in [{race}], or method = \
+                 \"rigid\" in [{housing}]"
             );
-            return Err(document.error_here(key, Problem::refused(reason, advice)));
+            return Err(document.error_here(key, Problem::refused(reason)));
         }
     }
-    if let Some(key) = document.first_below("outer_race.foundation") {
-        let reason = "the outer race is on a foundation or in a housing, not both";
-        return not_applicable(document, key, reason, "leave out [housing], or the foundation");
-    }
-    Ok(())
+    let reason = "the outer race is on a foundation or in a housing, not both. Hint: leave out [housing], or the foundation";
+    document.refuse_given(&[("outer_race.foundation", reason)])
 }
 
 /// Refuses loads and motions of an outer race that a rigid housing fixes.
 fn refuse_drives(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
-    const FIXED: &str = "a rigid housing fixes the outer race";
-    const ADVICE: &str = "leave it out, or choose another method";
+    const FIXED: &str =
+        "a rigid housing fixes the outer race. Hint: leave it out, or choose another method";
     let Some(outer) = &bearing.dynamics.outer else { return Ok(()) };
     if matches!(&outer.rotation, Rotation::Speed(speed) if !speed.is_zero()) {
-        return not_applicable(document, "outer_race.speed", FIXED, ADVICE);
+        return refused(document, "outer_race.speed", FIXED);
     }
     for (name, drive) in COORDINATE_NAMES.iter().zip(&outer.drives) {
         let moves =
             matches!(drive, Drive::Motion(profile) if !matches!(profile, Profile::Constant(_)));
         if moves {
-            return not_applicable(document, &drive_key(name, false), FIXED, ADVICE);
+            return refused(document, &drive_key("outer_race", name, false), FIXED);
         }
     }
     Ok(())
 }
 
-fn drive_key(name: &str, load: bool) -> String {
-    let tilt = name.starts_with("tilt");
-    let kind = match (tilt, load) {
-        (true, true) => "moment",
-        (true, false) => "tilt",
-        (false, true) => "load",
-        (false, false) => "displacement",
-    };
-    format!("outer_race.{name}.{kind}")
-}
-
-/// Start of explicit steps in equilibrium or not; refuses keys without effect.
+/// Start of explicit steps in equilibrium or not.
 fn start(reader: &mut Reader, method: HousingMethod) -> Result<bool, SceneError> {
-    let key = "housing.start";
-    if method != HousingMethod::Explicit {
-        if reader.is_given(key) {
-            let reason = "equilibria and reduced housings always start in equilibrium";
-            return not_applicable(reader.document, key, reason, "leave it out");
-        }
-        return Ok(false);
-    }
-    let from_equilibrium = reader.choice(key) == Some("equilibrium");
+    let from_equilibrium =
+        method == HousingMethod::Explicit && reader.choice("housing.start") == "equilibrium";
     if from_equilibrium && reader.is_given("housing.fit_ramp") {
         let reason = "a start in equilibrium includes the fit";
-        return not_applicable(reader.document, "housing.fit_ramp", reason, "leave it out");
+        return refused(reader.document, "housing.fit_ramp", reason);
     }
     Ok(from_equilibrium)
 }
@@ -205,8 +175,8 @@ fn settings(
     let fit_ramp = reader.given_number("housing.fit_ramp").or_else(|| {
         let ramp = 0.1 * end.filter(|_| ramps)?;
         let reason = "an interference grows in over a tenth of the run, as in section 2.4.1";
-        reader.note("housing.fit_ramp", &format!("{} s", plain(ramp)), reason);
-        Some(ramp)
+        let shown = format!("{} s", plain(ramp));
+        Some(reader.number_or("housing.fit_ramp", ramp, &shown, reason))
     });
     let width = reader.given_number("housing.width").or_else(|| {
         let length = bearing.dimensions.length;
@@ -214,17 +184,16 @@ fn settings(
             Some(length) => (format!("{} mm", plain(1e3 * length)), "the bearing's length"),
             None => ("that of the bore".to_string(), "without it and `bearing.length`"),
         };
-        reader.note("housing.width", &value, reason);
-        length
+        let used = reader.note("housing.width", &value, reason);
+        length.inspect(|length| {
+            used.fill("housing.width", *length);
+        })
     });
     let (unless_given, reason) = match friction {
         Some(_) => ("free", "friction supports the race along its axis"),
         None => ("fixed", "a shoulder or ring beside the bore; the bore has no friction"),
     };
-    let axial = reader.choice_if_given("housing.axial").unwrap_or_else(|| {
-        reader.note("housing.axial", unless_given, reason);
-        unless_given
-    });
+    let axial = reader.choice_or("housing.axial", unless_given, reason);
     let axial = if axial == "free" { Axial::Free } else { Axial::Fixed };
     let penalty = match document.value("housing.contact.stiffness") {
         Some(Checked::Either(0, stiffness)) => Penalty::PerArea(*stiffness),
@@ -235,36 +204,12 @@ fn settings(
         }
     };
     let (mut step_fraction, mut coupling_phase) = (0.8, 0.125);
-    for (key, value) in [
-        ("housing.step_fraction", &mut step_fraction),
-        ("housing.coupling_phase", &mut coupling_phase),
-    ] {
-        if method == HousingMethod::Explicit {
-            *value = reader.number(key).unwrap_or(*value);
-        } else if reader.is_given(key) {
-            let reason = "only `explicit` has such steps";
-            return not_applicable(
-                document,
-                key,
-                reason,
-                "leave it out, or write method = \"explicit\"",
-            );
-        }
+    if method == HousingMethod::Explicit {
+        step_fraction = reader.number("housing.step_fraction");
+        coupling_phase = reader.number("housing.coupling_phase");
     }
     let [modes_to, bore_load] =
         ["housing.modes_to", "housing.bore_load"].map(|key| reader.given_number(key));
-    let of_shapes = [("housing.modes_to", modes_to), ("housing.bore_load", bore_load)];
-    if let Some((key, _)) = of_shapes.into_iter().find(|(_, given)| given.is_some())
-        && method != HousingMethod::Reduced
-    {
-        let reason = "only `reduced` has modes";
-        return not_applicable(
-            document,
-            key,
-            reason,
-            "leave it out, or write method = \"reduced\"",
-        );
-    }
     Ok(HousingSettings {
         from_equilibrium,
         method,
@@ -303,100 +248,98 @@ fn fit(reader: &mut Reader, bearing: &Scene) -> Result<FitSize, SceneError> {
             if fit.abs() <= limit {
                 return Ok(FitSize::Interference(fit));
             }
-            Err(document.error(key, Problem::FitTooLarge { fit, limit }))
+            let problem = Problem::Contradiction(format!(
+                "the fit of {} is more than a hundredth of the outer race's radius. Allowed: {} to {}. Hint: check its unit",
+                um(fit),
+                um(-limit),
+                um(limit)
+            ));
+            Err(document.error(key, problem))
         }
         (None, Some(radius)) => {
             if radius > groove {
                 return Ok(FitSize::OuterRadius(radius));
             }
-            let problem = Problem::WrongOrder {
-                value: radius,
-                relation: "more than",
-                other_name: "the outer race's groove bottom",
-                other: groove,
-                advice: "it is the outside of the race",
-            };
+            let other = ("the outer race's groove bottom", groove);
+            let problem =
+                Problem::order(radius, "more than", other, "it is the outside of the race");
             Err(document.error("housing.outer_radius", problem))
         }
         (None, None) => {
-            reader.note("housing.fit", "{ radial = 0 um }", "a transition fit");
+            let key = "housing.fit.radial";
+            reader.note("housing.fit", "{ radial = 0 um }", "a transition fit").fill(key, 0.0);
             Ok(FitSize::Interference(0.0))
         }
     }
 }
 
-/// Refuses loads that need inertia in a quasi-static sequence.
-fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
-    const ADVICE: &str = "leave it out, or write method = \"explicit\" in [housing]";
-    let Some(outer) = &bearing.dynamics.outer else { return Ok(()) };
+/// Refuses prescribed motions across the axis and moments of an outer race, which its housing cannot take.
+fn refuse_drives_in_housing(
+    document: &Document,
+    outer: &DrivenBody,
+    hint: &str,
+    takes: impl Fn(&Profile) -> bool,
+) -> Result<(), SceneError> {
     for (i, (name, drive)) in COORDINATE_NAMES.iter().zip(&outer.drives).enumerate() {
-        match drive {
+        let reason = match drive {
             Drive::Motion(_) if i > 0 => {
-                let reason = "in equilibrium the housing determines the position of the outer race";
-                return not_applicable(document, &drive_key(name, false), reason, ADVICE);
+                "in equilibrium the housing determines the position of the outer race"
             }
-            Drive::Load(load) if i > 2 && !load.is_zero() => {
-                let reason = "a quasi-static outer race takes forces, not moments";
-                return not_applicable(document, &drive_key(name, true), reason, ADVICE);
+            Drive::Load(load) if i > 2 && !load.is_zero() && !takes(load) => {
+                "in equilibrium the outer race takes forces, not moments"
             }
-            Drive::Load(load) if !matches!(load, Profile::Constant(_)) => {
-                let reason = "a quasi-static outer race takes constant loads";
-                return not_applicable(document, &drive_key(name, true), reason, ADVICE);
-            }
-            _ => {}
-        }
-    }
-    if matches!(bearing.dynamics.inner.rotation, Rotation::Torque(_)) {
-        let reason = "without inertia no speed follows from a torque";
-        return not_applicable(document, "inner_race.torque", reason, "give inner_race.speed");
-    }
-    if bearing.dynamics.unbalance != 0.0 {
-        let reason = "an unbalance needs inertia";
-        return not_applicable(document, "inner_race.unbalance", reason, ADVICE);
-    }
-    for list in ["bearing.dent", "bearing.spall", "bearing.waviness"] {
-        if document.items(list).next().is_some() {
-            let reason = "an equilibrium has ideal races and balls only";
-            return not_applicable(document, list, reason, ADVICE);
-        }
-    }
-    for key in ["bearing.ball.deviations", "bearing.ball.scatter"] {
-        if document.value(key).is_some() {
-            let reason = "an equilibrium has equal balls only";
-            return not_applicable(document, key, reason, ADVICE);
-        }
+            _ => continue,
+        };
+        let key = drive_key("outer_race", name, matches!(drive, Drive::Load(_)));
+        return refused(document, &key, &format!("{reason}. Hint: {hint}"));
     }
     Ok(())
+}
+
+/// Refuses loads that need inertia in a quasi-static sequence.
+fn refuse_inertia(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
+    const HINT: &str = "leave it out, or write method = \"explicit\" in [housing]";
+    let Some(outer) = &bearing.dynamics.outer else { return Ok(()) };
+    refuse_drives_in_housing(document, outer, HINT, |_| false)?;
+    for (name, drive) in COORDINATE_NAMES.iter().zip(&outer.drives) {
+        if matches!(drive, Drive::Load(load) if !matches!(load, Profile::Constant(_))) {
+            let reason = format!("a quasi-static outer race takes constant loads. Hint: {HINT}");
+            return refused(document, &drive_key("outer_race", name, true), &reason);
+        }
+    }
+    let because = |reason: &str| format!("{reason}. Hint: {HINT}");
+    let [ideal, equal, needs_inertia] = [
+        because("an equilibrium has ideal races and balls only"),
+        because("an equilibrium has equal balls only"),
+        because("an unbalance needs inertia"),
+    ];
+    let unbalance = [("inner_race.unbalance", &needs_inertia[..])];
+    document.refuse_given(&unbalance[..usize::from(bearing.dynamics.unbalance != 0.0)])?;
+    document.refuse_given(&[
+        (
+            "inner_race.torque",
+            "without inertia no speed follows from a torque. Hint: give inner_race.speed",
+        ),
+        ("bearing.dent", &ideal),
+        ("bearing.spall", &ideal),
+        ("bearing.waviness", &ideal),
+        ("bearing.ball.deviations", &equal),
+        ("bearing.ball.scatter", &equal),
+    ])
 }
 
 /// Refuses what the equilibrium at the start of a reduced housing cannot have.
 fn refuse_start(document: &Document, bearing: &Scene) -> Result<(), SceneError> {
-    const ADVICE: &str = "leave it out, or write start = \"nominal\" in [numerics]";
-    let (Some(outer), Some(run)) = (&bearing.dynamics.outer, &bearing.dynamics.run) else {
-        return Ok(());
-    };
-    if run.options.start == Start::Nominal {
-        return Ok(());
-    }
-    for (i, (name, drive)) in COORDINATE_NAMES.iter().zip(&outer.drives).enumerate() {
-        match drive {
-            Drive::Motion(_) if i > 0 => {
-                let reason = "in the equilibrium of the start the housing determines the position of the outer race";
-                return not_applicable(document, &drive_key(name, false), reason, ADVICE);
-            }
-            Drive::Load(load) if i > 2 && load.value(0.0) != 0.0 => {
-                let reason =
-                    "in the equilibrium of the start the outer race takes forces, not moments";
-                return not_applicable(document, &drive_key(name, true), reason, ADVICE);
-            }
-            _ => {}
+    const HINT: &str = "leave it out, or write start = \"nominal\" in [numerics]";
+    match (&bearing.dynamics.outer, &bearing.dynamics.run) {
+        (Some(outer), Some(run)) if run.options.start != Start::Nominal => {
+            refuse_drives_in_housing(document, outer, HINT, |load| load.value(0.0) == 0.0)
         }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// Fixes the axial position of a race with an axial support, and drops the defaults of a free one.
-/// of a race that nothing holds.
 fn rest(
     document: &Document,
     bearing: &mut Scene,
@@ -406,7 +349,7 @@ fn rest(
         bearing.dynamics.run.as_ref().is_some_and(|run| run.options.start == Start::Nominal);
     if nominal && housing.method == HousingMethod::Explicit {
         let reason = "in a housing inner race and balls start in equilibrium with the outer race in its nominal position";
-        return not_applicable(document, "numerics.start", reason, "leave it out");
+        return refused(document, "numerics.start", reason);
     }
     let start = bearing.outer_race[0];
     let Some(DrivenBody { drives, .. }) = &mut bearing.dynamics.outer else { return Ok(()) };
@@ -415,9 +358,8 @@ fn rest(
         && let Drive::Load(load) = &drives[0]
     {
         if !load.is_zero() && housing.method != HousingMethod::QuasiStatic {
-            let reason = "a support beside the bore fixes the race along its axis";
-            let advice = "leave it out, or write axial = \"free\" in [housing]";
-            return not_applicable(document, "outer_race.x.load", reason, advice);
+            let reason = "a support beside the bore fixes the race along its axis. Hint: leave it out, or write axial = \"free\" in [housing]";
+            return refused(document, "outer_race.x.load", reason);
         }
         drives[0] = Drive::Motion(Profile::Constant(start));
         said.push("outer_race.x");
@@ -445,10 +387,9 @@ fn output(
     let all = bearing.plots.iter().all(drawn) && bearing.dynamics.plots.iter().all(in_run);
     if reader.is_given("output.plots") && !all {
         let reason = "in a housing statics draws `load-zone`, equilibria over time `orbit`, \
-                      `series` and `spectrum`";
-        let advice = "leave the others out, or write method = \"explicit\" in [housing] for `polar`, \
+                      `series` and `spectrum`. Hint: leave the others out, or write method = \"explicit\" in [housing] for `polar`, \
                       `slip-spin` and `run-up`";
-        return not_applicable(document, "output.plots", reason, advice);
+        return refused(document, "output.plots", reason);
     }
     bearing.plots.retain(drawn);
     bearing.dynamics.plots.retain(in_run);
@@ -462,9 +403,8 @@ fn output(
     if reader.is_given("output.channels")
         && !run.channels.iter().all(|group| *group == Loads || channels.contains(group))
     {
-        let reason = "equilibria have `races`, `loads`, `forces` and `energy`";
-        let advice = "leave the others out, or write method = \"explicit\" in [housing]";
-        return not_applicable(document, "output.channels", reason, advice);
+        let reason = "equilibria have `races`, `loads`, `forces` and `energy`. Hint: leave the others out, or write method = \"explicit\" in [housing]";
+        return refused(document, "output.channels", reason);
     }
     if run.channels.contains(&Loads) {
         channels.push(Loads);

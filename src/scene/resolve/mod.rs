@@ -20,3 +20,4 @@ pub mod solid;
 pub mod solid_mesh;
 pub mod solid_scene;
 pub mod spring;
+pub mod unused;

@@ -24,17 +24,12 @@ pub(crate) fn refuse_shared_places(
                 let (Some(name), Some(second)) = (&one.name, &other.name) else { continue };
                 if a == b && (at - there).abs() < room {
                     let reason = format!(
-                        "its balls would be inside those of bearing {second}: they are {:.4} mm apart on the \
-                         same body, less than a ball diameter",
-                        1e3 * (at - there).abs()
+                        "its balls would be inside those of bearing {second}: they are {:.4} mm apart on the same body, less \
+                         than a ball diameter. Hint: give each its own position, such as {} = \"60 mm\"",
+                        1e3 * (at - there).abs(),
+                        ["inner_at", "outer_at"][side]
                     );
-                    let key = ["inner_at", "outer_at"][side];
-                    let advice = format!("give each its own position, such as {key} = \"60 mm\"");
-                    return Err(document.error_of_name(
-                        "bearing",
-                        name,
-                        Problem::refused(reason, advice),
-                    ));
+                    return Err(document.error_of_name("bearing", name, Problem::refused(reason)));
                 }
             }
         }
@@ -63,19 +58,15 @@ pub(crate) fn refuse_races_apart(
         }
         let reason = format!(
             "its inner race is at {:.4} mm along the axis and its outer one at {:.4} mm, which is {:.4} mm apart; balls touch \
-             both within {:.4} mm",
+             both within {:.4} mm. Hint: positions count from the centre of the body under a race: give both the same `inner_at` and \
+                      `outer_at`, or leave `outer_at` out",
             1e3 * inner,
             1e3 * outer,
             1e3 * apart,
             1e3 * allowed
         );
-        let advice = "positions count from the centre of the body under a race: give both the same `inner_at` and \
-                      `outer_at`, or leave `outer_at` out";
-        let problem = Problem::refused(reason, advice);
-        return Err(match &placed.name {
-            Some(name) => document.error_of_name("bearing", name, problem),
-            None => document.error("bearing.outer_at", problem),
-        });
+        let problem = Problem::refused(reason);
+        return Err(document.error_of(placed.name.as_deref(), "bearing.outer_at", problem));
     }
     Ok(())
 }
@@ -104,16 +95,14 @@ pub(crate) fn refuse_thick_shafts(
             continue;
         }
         let reason = format!(
-            "body.{} is {} mm thick here, more than the {} mm of the inner race's groove",
+            "body.{} is {} mm thick here, more than the {} mm of the inner race's groove. Hint: check segments, `inner_at` and \
+             their units",
             bodies[index].name,
             display_time(1e3 * diameter),
             display_time(1e3 * groove)
         );
-        let problem = Problem::refused(reason, "check segments, `inner_at` and their units");
-        return Err(match &placed.name {
-            Some(name) => document.error_of_name("bearing", name, problem),
-            None => document.error("bearing.inner_at", problem),
-        });
+        let problem = Problem::refused(reason);
+        return Err(document.error_of(placed.name.as_deref(), "bearing.inner_at", problem));
     }
     Ok(())
 }
@@ -137,16 +126,11 @@ pub(crate) fn refuse_rubber_in_races(
             continue;
         }
         let reason = format!(
-            "the rubber begins at {} mm, inside the outer race in it, of {} mm",
+            "the rubber begins at {} mm, inside the outer race in it, of {} mm. Hint: give it the diameter of the race, or more",
             display_time(1e3 * of.body.inner_diameter),
             display_time(2e3 * radius)
         );
-        let advice = "give it the diameter of the race, or more";
-        return Err(document.scoped(&spring.name).refused(
-            "spring.bushing.inner_diameter",
-            reason,
-            advice,
-        ));
+        return Err(document.scoped(&spring.name).refused("spring.bushing.inner_diameter", reason));
     }
     Ok(())
 }

@@ -110,16 +110,16 @@ pub static FORMS: &[Form] = &[
 /// Reads the entries of a profile of `dimension` with values within `range`.
 pub fn read(
     key: &'static Key,
-    dimension: Dimension,
-    range: Range,
+    (dimension, range): (Dimension, Range),
     entries: &[Entry],
     offset: usize,
+    in_si: bool,
 ) -> Result<Profile, ValueError> {
     let form = form_of(entries, offset)?;
     if let Some(stray) = entries.iter().find(|entry| member(form, &entry.name).is_none()) {
         return Err(unknown(stray, names(form)));
     }
-    let reader = Reader { key, dimension, range, entries, offset };
+    let reader = Reader { key, dimension, range, entries, offset, in_si };
     let profile = match form.members[0].name() {
         "ramp" => {
             let [from, to] = reader.pair("ramp")?;
@@ -220,6 +220,7 @@ struct Reader<'e> {
     range: Range,
     entries: &'e [Entry],
     offset: usize,
+    in_si: bool,
 }
 
 impl Reader<'_> {
@@ -232,7 +233,7 @@ impl Reader<'_> {
         let at = |problem| ValueError { offset: node.offset, within: name.to_string(), problem };
         match &node.value {
             Value::Text(_) | Value::Number(_) => {
-                quantity(self.key, &node.value, self.dimension, self.range).map_err(at)
+                quantity(self.key, &node.value, self.dimension, self.range, self.in_si).map_err(at)
             }
             other => {
                 let expected = format!("{} with its unit", self.dimension.name());
@@ -278,7 +279,8 @@ impl Reader<'_> {
             };
             let time = match &pair[0].value {
                 Value::Text(_) | Value::Number(_) => {
-                    quantity(&START, &pair[0].value, Time, TIME).map_err(|p| at(&pair[0], p))?
+                    quantity(&START, &pair[0].value, Time, TIME, self.in_si)
+                        .map_err(|p| at(&pair[0], p))?
                 }
                 other => return Err(at(&pair[0], wrong("a time with its unit".into(), other))),
             };
@@ -298,7 +300,7 @@ impl Reader<'_> {
         let Kind::Quantity(dimension, range) = key.kind else { return Ok(0.0) };
         let at = |offset, problem| ValueError { offset, within: key.path.to_string(), problem };
         match (self.entry(key.path), key.need) {
-            (Some(entry), _) => quantity(key, &entry.node.value, dimension, range)
+            (Some(entry), _) => quantity(key, &entry.node.value, dimension, range, self.in_si)
                 .map_err(|problem| at(entry.node.offset, problem)),
             (None, Need::Required) => {
                 let example = format!("`{} = {}` to the profile", key.path, key.example());

@@ -4,9 +4,8 @@ use crate::ch2_housing::bearing::geometry::BearingGeometry;
 use crate::ch3_bushing::dent::{Dent, DentShape};
 use crate::ch5_cage::raceway_profile::{RacewayProfile, Spall, Surface, Waviness};
 use crate::ch5_cage::spall::SpallShape;
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::SceneError;
 use crate::scene::resolve::bearing::Reader;
-use crate::scene::resolve::solid::{item_number, missing};
 use crate::scene::text::items::ItemRef;
 use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
@@ -47,33 +46,21 @@ enum Part {
 }
 
 fn part(item: ItemRef, geometry: &BearingGeometry) -> Result<Part, SceneError> {
-    let side = match item.value("on") {
-        Some(Checked::Choice("inner")) => Some(0),
-        Some(Checked::Choice("outer")) => Some(1),
-        Some(Checked::Choice(_)) => None,
-        _ => return Err(missing(item, "on", "", "on = \"outer\"")),
-    };
-    let number = match item.value("ball") {
-        Some(Checked::Integer(number)) => Some(*number as usize),
-        _ => None,
-    };
-    match (side, number) {
-        (Some(_), Some(_)) => Err(refused(item, "ball", "a race")),
-        (Some(side), None) => Ok(Part::Race(side)),
-        (None, None) => Err(missing(item, "ball", " with `on = \"ball\"`", "ball = 1")),
-        (None, Some(number)) if number > geometry.ball_count => {
-            let reason = format!("the bearing has {} balls", geometry.ball_count);
-            let advice = format!("give a number from 1 to {}", geometry.ball_count);
-            Err(item.error("ball", Problem::refused(reason, advice)))
-        }
-        (None, Some(number)) => Ok(Part::Ball(number - 1)),
+    match item.choice("on")? {
+        "inner" => Ok(Part::Race(0)),
+        "outer" => Ok(Part::Race(1)),
+        _ => match item.number("ball").map(|number| number as usize) {
+            None => Err(item.missing("ball", " with `on = \"ball\"`")),
+            Some(number) if number > geometry.ball_count => {
+                let reason = format!(
+                    "the bearing has {} balls. Hint: give a number from 1 to {}",
+                    geometry.ball_count, geometry.ball_count
+                );
+                Err(item.refused("ball", reason))
+            }
+            Some(number) => Ok(Part::Ball(number - 1)),
+        },
     }
-}
-
-/// A key that a profile of this part does not use.
-fn refused(item: ItemRef, name: &str, part: &str) -> SceneError {
-    let reason = format!("a profile of {part} does not use it");
-    item.error(name, Problem::refused(reason, "leave it out, or change `on`"))
 }
 
 /// Angle of the nominal contact around the groove of a race, from its bottom towards X, rad.
@@ -89,78 +76,59 @@ fn spall(
     geometry: &BearingGeometry,
     item: ItemRef,
 ) -> Result<Spall, SceneError> {
-    let required = |name: &str, example: &str| {
-        item_number(item, name).ok_or_else(|| missing(item, name, "", example))
-    };
     let part = part(item, geometry)?;
-    let angle = required("angle", "angle = \"270 deg\"")?;
-    let length = required("length", "length = \"2 mm\"")?;
+    let (angle, length) = (item.required("angle")?, item.required("length")?);
     let longest = LONGEST * geometry.ball_radius;
     if length > longest {
         let reason = format!(
-            "a spall longer than {} mm, the ball radius, is outside the model",
+            "a spall longer than {} mm, the ball radius, is outside the model. Hint: the contact keeps the direction of its normal; give a shorter spall",
             plain(1e3 * longest)
         );
-        let advice = "the contact keeps the direction of its normal; give a shorter spall";
-        return Err(item.error("length", Problem::refused(reason, advice)));
+        return Err(item.refused("length", reason));
     }
-    let groove_angle = item_number(item, "groove_angle").unwrap_or_else(|| {
+    let groove_angle = item.number("groove_angle").unwrap_or_else(|| {
         let side = if let Part::Race(side) = part { side } else { 1 };
         let track = nominal_track(geometry, side);
         let reason = "in the nominal track of the balls";
         let value = format!("{} deg", plain(track.to_degrees()));
-        reader.note("bearing.spall.groove_angle", &value, reason);
+        let path = item.own_path("groove_angle");
+        reader.note("bearing.spall.groove_angle", &value, reason).fill(&path, track);
         track
     });
     let (width, on) = match part {
-        Part::Race(side) => {
-            let width = required("width", "width = \"4 mm\"")?;
-            (width, Surface::Race { side, angle, groove_angle })
-        }
-        Part::Ball(_) if item.value("width").is_some() => {
-            return Err(refused(item, "width", "a ball"));
-        }
+        Part::Race(side) => (item.required("width")?, Surface::Race { side, angle, groove_angle }),
         Part::Ball(ball) => (f64::INFINITY, Surface::Ball { ball, angle, groove_angle }),
     };
-    let edge_radius = item_number(item, "edge_radius").unwrap_or_else(|| {
-        reader.note_default("bearing.spall.edge_radius");
-        USUAL_EDGE
-    });
-    let depth = match (item_number(item, "depth"), item_number(item, "floor_radius")) {
-        (Some(_), Some(_)) => {
-            let rival = "floor_radius".to_string();
-            let advice = "keep `floor_radius` or `depth`".to_string();
-            return Err(item.error("depth", Problem::Exclusive { rival, advice }));
-        }
-        (Some(depth), None) => depth,
+    let edge_radius = reader.of_item(item, "edge_radius");
+    let depth = match (item.number("depth"), item.number("floor_radius")) {
+        (Some(depth), _) => depth,
         (None, given) => {
             let floor_radius = given.unwrap_or_else(|| {
-                let reason = "R of Fig. 5.29";
-                reader.note("bearing.spall.floor_radius", "6 mm", reason);
+                let path = item.own_path("floor_radius");
+                reader
+                    .note("bearing.spall.floor_radius", "6 mm", "R of Fig. 5.29")
+                    .fill(&path, USUAL_FLOOR);
                 USUAL_FLOOR
             });
             if 0.5 * length > floor_radius + edge_radius {
-                let reason = "floor and edges are too tight for the length";
-                let advice = format!(
-                    "floor_radius + edge_radius must be at least half of the length, {} mm",
+                let reason = format!(
+                    "floor and edges are too tight for the length. Hint: floor_radius + edge_radius must be at least half of the length, {} mm",
                     plain(0.5e3 * length)
                 );
-                return Err(item.error("floor_radius", Problem::refused(reason, advice)));
+                return Err(item.refused("floor_radius", reason));
             }
             SpallShape::depth_of(length, edge_radius, floor_radius)
         }
     };
     let shape = SpallShape { length, width, edge_radius, depth };
     if !shape.vanishes() && (depth > 0.5 * length || shape.floor_radius() <= 0.0) {
-        let reason = "edges of this radius and length do not reach so deep";
-        let advice = "give a smaller depth or edge_radius, or a longer spall";
-        return Err(item.error("depth", Problem::refused(reason, advice)));
+        let reason = "edges of this radius and length do not reach so deep. Hint: give a smaller depth or edge_radius, or a longer spall";
+        return Err(item.refused("depth", reason));
     }
     Ok(Spall { shape, on })
 }
 
-/// Radii of the source's spall (Fig. 5.29), m.
-const USUAL_EDGE: f64 = 1e-3;
+/// Floor radius of the source's spall (Fig. 5.29), m.
 const USUAL_FLOOR: f64 = 6e-3;
 
 fn waviness(
@@ -169,36 +137,16 @@ fn waviness(
     item: ItemRef,
 ) -> Result<Waviness, SceneError> {
     let part = part(item, geometry)?;
-    let order = match item.value("order") {
-        Some(Checked::Integer(order)) => *order as f64,
-        _ => return Err(missing(item, "order", "", "order = 12")),
-    };
-    let amplitude = item_number(item, "amplitude")
-        .ok_or_else(|| missing(item, "amplitude", "", "amplitude = \"0.5 um\""))?;
-    let unused: &[&str] = match part {
-        Part::Race(_) => &["angle", "groove_angle"],
-        Part::Ball(_) => &["phase"],
-    };
-    let on = if let Part::Race(_) = part { "a race" } else { "a ball" };
-    if let Some(name) = unused.iter().find(|name| item.value(name).is_some()) {
-        return Err(refused(item, name, on));
-    }
-    let mut usual = |name: &str| {
-        item_number(item, name).unwrap_or_else(|| {
-            reader.note_default(&format!("bearing.waviness.{name}"));
-            0.0
-        })
-    };
+    let (order, amplitude) = (item.required("order")?, item.required("amplitude")?);
     Ok(match part {
         Part::Race(side) => {
             let on = Surface::Race { side, angle: 0.0, groove_angle: 0.0 };
-            Waviness { order, amplitude, phase: usual("phase"), on }
+            Waviness { order, amplitude, phase: reader.of_item(item, "phase"), on }
         }
         Part::Ball(ball) => {
-            let because = " with `on = \"ball\"`";
-            let angle = item_number(item, "angle")
-                .ok_or_else(|| missing(item, "angle", because, "angle = \"0 deg\""))?;
-            let on = Surface::Ball { ball, angle, groove_angle: usual("groove_angle") };
+            let angle = item.required("angle")?;
+            let groove_angle = reader.of_item(item, "groove_angle");
+            let on = Surface::Ball { ball, angle, groove_angle };
             Waviness { order, amplitude, phase: 0.0, on }
         }
     })
@@ -212,25 +160,24 @@ pub(crate) fn ball_deviations(
     let balls = geometry.ball_count;
     if let Some(Checked::Quantities(given)) = reader.document.value("bearing.ball.deviations") {
         if given.len() != balls {
-            let reason = format!("{} values for {balls} balls", given.len());
-            let advice = "give one value for each ball";
-            return Err(reader.document.refused("bearing.ball.deviations", reason, advice));
+            let reason = format!(
+                "{} values for {balls} balls. Hint: give one value for each ball",
+                given.len()
+            );
+            return Err(reader.document.refused("bearing.ball.deviations", reason));
         }
         return Ok(given.clone());
     }
     let Some(scatter) = reader.given_number("bearing.ball.scatter") else {
         if reader.is_given("bearing.ball.seed") {
-            let reason = "without `scatter` nothing is random";
-            let advice = "leave it out, or give scatter";
-            return Err(reader.document.refused("bearing.ball.seed", reason, advice));
+            let reason = "without `scatter` nothing is random. Hint: leave it out, or give scatter";
+            return Err(reader.document.refused("bearing.ball.seed", reason));
         }
         return Ok(Vec::new());
     };
     // Checked by the key table: a whole number.
-    let seed = reader.given_number("bearing.ball.seed").unwrap_or_else(|| {
-        reader.note("bearing.ball.seed", "1", "another number gives other deviations");
-        1.0
-    });
+    let reason = "another number gives other deviations";
+    let seed = reader.number_or("bearing.ball.seed", 1.0, "1", reason);
     Ok(normal(seed as u64, balls).into_iter().map(|value| scatter * value).collect())
 }
 
@@ -255,50 +202,34 @@ fn dent(
     geometry: &BearingGeometry,
     item: ItemRef,
 ) -> Result<Dent, SceneError> {
-    let required = |name: &str, example: &str| {
-        item_number(item, name).ok_or_else(|| missing(item, name, "", example))
-    };
-    let side = match item.value("race") {
-        Some(Checked::Choice("inner")) => 0,
-        Some(Checked::Choice(_)) => 1,
-        _ => return Err(missing(item, "race", "", "race = \"outer\"")),
-    };
-    let (angle, diameter) =
-        (required("angle", "angle = \"270 deg\"")?, required("diameter", "diameter = \"500 um\"")?);
+    let side = usize::from(item.choice("race")? == "outer");
+    let (angle, diameter) = (item.required("angle")?, item.required("diameter")?);
     let widest = WIDEST * geometry.ball_radius;
     if diameter > widest {
         let reason = format!(
-            "a dent wider than {} mm, half the ball's radius, is outside the model",
+            "a dent wider than {} mm, half the ball's radius, is outside the model. Hint: the law is that of a surface that is flat except for the dent; give a smaller diameter",
             plain(1e3 * widest)
         );
-        let advice = "the law is that of a surface that is flat except for the dent; give a smaller diameter";
-        return Err(item.error("diameter", Problem::refused(reason, advice)));
+        return Err(item.refused("diameter", reason));
     }
-    let depth = item_number(item, "depth").unwrap_or_else(|| {
-        let depth = USUAL_DEPTH * diameter;
-        let reason = "a twentieth of the diameter; the source gives none";
-        reader.note("bearing.dent.depth", &format!("{} um", plain(1e6 * depth)), reason);
-        depth
-    });
-    let shoulder_height = item_number(item, "shoulder_height").unwrap_or_else(|| {
-        reader.note_default("bearing.dent.shoulder_height");
-        0.0
-    });
-    let shoulder_width = match item_number(item, "shoulder_width") {
-        Some(width) => width,
-        None if shoulder_height > 0.0 => {
-            let width = USUAL_WIDTH * diameter;
-            let reason = "a quarter of the diameter";
-            reader.note(
-                "bearing.dent.shoulder_width",
-                &format!("{} um", plain(1e6 * width)),
-                reason,
-            );
-            width
-        }
-        None => 0.0,
+    let mut follows = |name: &str, part: f64, reason: &str| {
+        item.number(name).unwrap_or_else(|| {
+            let value = part * diameter;
+            let text = format!("{} um", plain(1e6 * value));
+            reader.note(&item.path(name), &text, reason).fill(&item.own_path(name), value);
+            value
+        })
     };
+    let reason = "a twentieth of the diameter; the source gives none";
+    let depth = follows("depth", USUAL_DEPTH, reason);
+    let shoulder_width = match item.number("shoulder_height") {
+        Some(height) if height > 0.0 => {
+            follows("shoulder_width", USUAL_WIDTH, "a quarter of the diameter")
+        }
+        _ => item.number("shoulder_width").unwrap_or(0.0),
+    };
+    let shoulder_height = reader.of_item(item, "shoulder_height");
     let shape = DentShape { diameter, depth, shoulder_height, shoulder_width };
-    let groove_angle = item_number(item, "groove_angle").unwrap_or(0.0);
+    let groove_angle = reader.of_item(item, "groove_angle");
     Ok(Dent { shape, side, angle, groove_angle })
 }

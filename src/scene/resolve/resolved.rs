@@ -13,16 +13,39 @@ use crate::mesh;
 use crate::motion::simulation::RunOptions;
 use crate::plan::channels::ChannelGroup;
 pub use crate::scene::text::document::Assumption;
+use crate::scene::text::document::Document;
 use crate::scene::text::sweep::SweepAxis;
+use crate::scene::text::value::Checked;
 
 /// A default in use: reported with the results as an assumption.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DefaultUsed {
-    /// Dotted key that was not given.
+    /// Dotted key or table that was not given.
     pub key: String,
-    /// Value in use, as it would be written.
+    /// Value in use, as shown.
     pub value: String,
     pub reason: String,
+    /// Keys that would give the same, and their values.
+    pub fills: Vec<(String, Checked)>,
+}
+
+impl DefaultUsed {
+    /// False for a value that follows from the keys next to it, such as a second position.
+    pub fn is_reported(&self) -> bool {
+        !self.reason.is_empty()
+    }
+
+    /// Adds a key that would give the same.
+    pub(crate) fn fill(&mut self, key: &str, value: impl Into<Checked>) -> &mut DefaultUsed {
+        self.fills.push((key.to_string(), value.into()));
+        self
+    }
+
+    /// Names the thing that has the default: `bearing.left.hertz`.
+    pub(crate) fn name(&mut self, document: &Document) {
+        let keys = self.fills.iter_mut().map(|(key, _)| key).chain([&mut self.key]);
+        keys.for_each(|key| *key = document.shown(key, true));
+    }
 }
 
 /// Size of one raceway, in m, with the three ways to state its groove.
@@ -30,8 +53,6 @@ pub struct DefaultUsed {
 pub struct RaceDimensions {
     /// Groove-bottom radius from the axis, after the clearance has been applied.
     pub radius: f64,
-    /// The groove-bottom radius as given, if it was.
-    pub nominal_radius: Option<f64>,
     pub groove_radius: f64,
     /// Groove radius / nominal ball diameter.
     pub conformity: f64,

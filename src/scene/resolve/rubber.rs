@@ -4,16 +4,16 @@ use crate::ch2_housing::elastomer::eight_chain::{ChainPull, EightChain};
 use crate::ch2_housing::elastomer::maxwell::Maxwell;
 use crate::ch2_housing::elastomer::{Elastomer, ElastomerError, named};
 use crate::scene::error::SceneError;
-use crate::scene::resolve::bearing::Reader;
-use crate::scene::resolve::solid::{item_number, missing};
+use crate::scene::resolve::bearing::{Reader, text};
 use crate::scene::resolve::solid_scene::{Harmonic, Law, MeshSource, RubberScene, RunSteps};
+use crate::scene::resolve::unused::refuse_unused;
 use crate::scene::tables::keys;
+use crate::scene::tables::solid::LAW;
 use crate::scene::text::document::Document;
 use crate::scene::text::units::plain;
 use crate::scene::text::value::Checked;
 use crate::solids::rubber::steps::Stepping;
 
-const LAW: &str = "solid.material.law";
 /// Default of B over C_R: that of Tables 2.3 and 3.1.
 const BULK_RATIO: f64 = 100.0;
 /// As the range of `bulk_ratio`.
@@ -26,33 +26,6 @@ const RUBBER: f64 = 1100.0;
 /// Estimated error of the stress in a step, over the largest so far.
 const ACCURACY: f64 = 1e-3;
 
-/// Keys and tables of rubber only.
-const OF_RUBBER: [&str; 8] = [
-    "solid.material.rubber_modulus",
-    "solid.material.table",
-    "solid.material.chain",
-    "solid.material.chain_force",
-    "solid.material.bulk_ratio",
-    "solid.material.bulk_modulus",
-    "solid.material.maxwell",
-    "solid.harmonic",
-];
-
-/// Keys without effect on a solid of rubber, with reasons.
-const NOT_OF_RUBBER: [(&str, &str); 10] = [
-    ("solid.material.youngs_modulus", "it belongs to the law \"linear-elastic\""),
-    ("solid.material.poisson_ratio", "it belongs to the law \"linear-elastic\""),
-    ("solid.damping", "damping of rubber follows from its Maxwell elements"),
-    ("solid.damped_motion", "damping of rubber follows from its Maxwell elements"),
-    ("solid.velocity", NO_INERTIA),
-    ("solid.spin", NO_INERTIA),
-    ("modes", NO_INERTIA),
-    ("numerics.method", NO_INERTIA),
-    ("numerics.step_fraction", NO_INERTIA),
-    ("numerics.energy_limit", "implicit steps end in equilibrium, and no ledger is kept"),
-];
-const NO_INERTIA: &str = "rubber is solved without inertia, in implicit steps";
-
 /// Whether the scene's solid is of rubber.
 pub(crate) fn is_rubber(document: &Document) -> bool {
     matches!(document.value(LAW), Some(Checked::Choice("elastomer")))
@@ -63,37 +36,23 @@ pub(crate) fn refuse_rubber(document: &Document) -> Result<(), SceneError> {
     if !is_rubber(document) {
         return Ok(());
     }
-    let reason = "a housing of rubber is not built";
-    let advice = "leave `law` out, or take the solid by itself: without [bearing] and [housing]";
-    Err(document.refused(LAW, reason, advice))
+    let reason = "a housing of rubber is not built. Hint: leave `law` out, or take the solid by itself: without [bearing] and [housing]";
+    Err(document.refused(LAW, reason))
 }
 
 /// The law of the material, and its density (kg/m³).
 pub(crate) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
-    let document = reader.document;
-    if !is_rubber(document) {
-        if let Some(key) = OF_RUBBER.iter().find_map(|part| document.first_below(part)) {
-            let reason = "it belongs to the law \"elastomer\"";
-            let advice = "write `law = \"elastomer\"` in [solid.material], or leave it out";
-            return Err(document.refused(key, reason, advice));
-        }
-        let mut number = |key: &str, usual: f64| {
-            reader.number(&format!("solid.material.{key}")).unwrap_or(usual)
-        };
+    refuse_unused(reader.document, &["solid"])?;
+    if !is_rubber(reader.document) {
         let law = Law::LinearElastic {
-            youngs_modulus: number("youngs_modulus", 210e9),
-            poisson_ratio: number("poisson_ratio", 0.3),
+            youngs_modulus: reader.number("solid.material.youngs_modulus"),
+            poisson_ratio: reader.number("solid.material.poisson_ratio"),
         };
         return Ok((law, density(reader, STEEL, "bearing steel")));
     }
-    for (key, reason) in NOT_OF_RUBBER {
-        if let Some(given) = document.first_below(key) {
-            return Err(document.refused(given, reason, "leave it out"));
-        }
-    }
     let table = reader.choice_if_given("solid.material.table");
     let pull = match reader.choice("solid.material.chain_force") {
-        Some("inverse-langevin") => ChainPull::Exact,
+        "inverse-langevin" => ChainPull::Exact,
         _ => ChainPull::FiveTerms,
     };
     let because = " with `law = \"elastomer\"` and no `table`";
@@ -106,10 +65,7 @@ pub(crate) fn material(reader: &mut Reader) -> Result<(Law, f64), SceneError> {
 /// The given density, else a usual one.
 fn density(reader: &mut Reader, usual: f64, reason: &str) -> f64 {
     const KEY: &str = "solid.material.density";
-    reader.given_number(KEY).unwrap_or_else(|| {
-        reader.note(KEY, &format!("{} kg/m^3", plain(usual)), reason);
-        usual
-    })
+    reader.number_or(KEY, usual, &format!("{} kg/m^3", plain(usual)), reason)
 }
 
 /// The rubber of the keys in the table `of`; given keys replace values of a table of the source.
@@ -140,30 +96,29 @@ pub(crate) fn rubber(
             return Err(reader.missing(&path("rubber_modulus"), because));
         }
     };
-    let locking = chain.unwrap_or_else(|| {
-        if table.is_none() {
-            reader.note(&path("chain"), &plain(CHAIN), "as in Tables 2.3 and 3.1");
+    let locking = match (chain, table) {
+        (None, None) => {
+            let reason = "as in Tables 2.3 and 3.1";
+            reader.number_or(&path("chain"), CHAIN, &plain(CHAIN), reason)
         }
-        CHAIN
-    });
+        (chain, _) => chain.unwrap_or(CHAIN),
+    };
     let bulk = match (bulk, ratio) {
         (Some(bulk), _) if bulk < modulus => {
-            let reason =
-                "rubber is nearly incompressible, and this is less than C_R of its network";
-            let advice = "give at least C_R, usually 100 times that and more";
-            return Err(document.refused("solid.material.bulk_modulus", reason, advice));
+            let reason = "rubber is nearly incompressible, and this is less than C_R of its network. Hint: give at least C_R, usually 100 times that and more";
+            return Err(document.refused("solid.material.bulk_modulus", reason));
         }
         (Some(bulk), _) if bulk > MOST_BULK_RATIO * modulus => {
-            let reason = "no rubber resists a change of volume as much, and rounding would dominate the result";
-            let advice = "give at most a million times C_R; many rubbers have 2000 MPa, a thousand times that";
-            return Err(document.refused("solid.material.bulk_modulus", reason, advice));
+            let reason = "no rubber resists a change of volume as much, and rounding would dominate the result. Hint: give at most a million times C_R; many rubbers have 2000 MPa, a thousand times that";
+            return Err(document.refused("solid.material.bulk_modulus", reason));
         }
         (Some(bulk), _) => bulk,
         (None, Some(ratio)) => ratio * modulus,
         (None, None) => {
             if table.is_none() {
                 let reason = "100 C_R, as in Tables 2.3 and 3.1";
-                reader.note(&path("bulk_ratio"), &plain(BULK_RATIO), reason);
+                let path = path("bulk_ratio");
+                reader.note(&path, &plain(BULK_RATIO), reason).fill(&path, BULK_RATIO);
             }
             BULK_RATIO * modulus
         }
@@ -175,21 +130,23 @@ pub(crate) fn rubber(
             _ => "chain",
         };
         let reason = "with the inverse Langevin function the chains are straight in the undeformed rubber where it \
-                      is 1 or less";
-        let advice = "take more than 1; the source has 8";
-        document.refused(&path(key), reason, advice)
+                      is 1 or less. Hint: take more than 1; the source has 8";
+        document.refused(&path(key), reason)
     })?;
     let (mut maxwell, list) = (Vec::new(), path("maxwell"));
     for item in document.items(&list) {
-        let number = |key: &str, example: &str| {
-            item_number(item, key).ok_or_else(|| missing(item, key, "", example))
-        };
-        let gamma = number("gamma", "gamma = 0.492")?;
-        let tau = number("relaxation_time", "relaxation_time = \"10 s\"")?;
+        let (gamma, tau) = (item.required("gamma")?, item.required("relaxation_time")?);
         maxwell.push(Maxwell { gamma, tau });
     }
+    reader.follow(&path("rubber_modulus"), modulus);
+    reader.follow(&path("chain"), locking);
+    reader.follow(&path("bulk_ratio"), ratio.unwrap_or(BULK_RATIO));
     if let Some(base) = base.filter(|_| maxwell.is_empty()) {
         maxwell = base.maxwell;
+        for (element, number) in maxwell.iter().zip(1..) {
+            reader.follow(&format!("{list}.{number}.gamma"), element.gamma);
+            reader.follow(&format!("{list}.{number}.relaxation_time"), element.tau);
+        }
         if table == Some("2.3") {
             let value = "those of Table 3.1";
             let reason = "Table 2.3 prints none; the source says that they were adjusted";
@@ -208,16 +165,10 @@ fn harmonic(reader: &Reader) -> Result<Option<Harmonic>, SceneError> {
         Some(Checked::Quantities(frequencies)) => frequencies.clone(),
         _ => return Err(reader.missing("solid.harmonic.frequencies", "")),
     };
-    let set = match document.value("solid.harmonic.set") {
-        Some(Checked::Text(set)) => set.clone(),
-        _ => return Err(reader.missing("solid.harmonic.set", ", the moved set")),
-    };
-    let axis = match reader.choice_if_given("solid.harmonic.axis") {
-        Some("x") => 0,
-        Some("y") => 1,
-        Some(_) => 2,
-        None => return Err(reader.missing("solid.harmonic.axis", ", the direction of motion")),
-    };
+    let set = text(document, "solid.harmonic.set")
+        .ok_or_else(|| reader.missing("solid.harmonic.set", ", the moved set"))?;
+    let axis = reader.required_choice("solid.harmonic.axis", ", the direction of motion")?;
+    let axis = ["x", "y", "z"].iter().position(|name| *name == axis).unwrap_or(0);
     Ok(Some(Harmonic { set, axis, frequencies }))
 }
 
@@ -236,9 +187,8 @@ pub(crate) fn check_order(
     if !(linear && is_rubber(document)) {
         return Ok(());
     }
-    let reason = FOUR_NODES_LOCK;
-    let advice = "write `order = 2` in [solid.mesh]";
-    Err(document.refused("solid.mesh.order", reason, advice))
+    let reason = format!("{FOUR_NODES_LOCK}. Hint: write `order = 2` in [solid.mesh]");
+    Err(document.refused("solid.mesh.order", reason))
 }
 
 pub(crate) const FOUR_NODES_LOCK: &str = "four-node elements of nearly incompressible rubber lock";
@@ -249,8 +199,7 @@ pub(crate) fn steps(reader: &mut Reader) -> RunSteps {
         Some(step) => Stepping::Fixed(step),
         None => Stepping::Accuracy(reader.given_number("numerics.accuracy").unwrap_or_else(|| {
             let reason = "of the largest stress so far, in each step";
-            reader.note("numerics.accuracy", &plain(ACCURACY), reason);
-            ACCURACY
+            reader.number_or("numerics.accuracy", ACCURACY, &plain(ACCURACY), reason)
         })),
     })
 }

@@ -10,29 +10,12 @@ use crate::scene::resolve::bearing::{Reader, text};
 use crate::scene::resolve::housing_scene::HousingMethod;
 use crate::scene::resolve::resolved::CageInRun;
 use crate::scene::resolve::shaft::beside;
+use crate::scene::resolve::unused::refuse_unused;
 use crate::scene::tables::keys::nearest;
 use crate::scene::tables::sensor::SENSORS;
 use crate::scene::text::document::Document;
 use crate::scene::text::scopes::no_such;
 use crate::scene::text::value::Checked;
-
-/// Keys of accelerometers only.
-const OF_AN_ACCELEROMETER: [&str; 7] =
-    ["on", "at", "radius", "angle", "direction", "azimuth", "elevation"];
-const OF_A_TELEMETER: [&str; 12] = [
-    "bearing",
-    "distance",
-    "offset",
-    "offset_angle",
-    "runout",
-    "runout_angle",
-    "loop_radius",
-    "transceiver_radius",
-    "wire_radius",
-    "capacitance",
-    "resistance",
-    "frequency",
-];
 
 /// Adds the sensors of a scene.
 ///
@@ -46,9 +29,8 @@ pub(crate) fn add_sensors(
     refuse_nameless(document)?;
     for name in document.names("sensor") {
         if scene.housing_method() == Some(HousingMethod::QuasiStatic) {
-            let reason = "a quasi-static sequence has no accelerations and no moving cage";
-            let advice = "leave it out, or write method = \"reduced\" or \"explicit\" in [housing]";
-            let problem = Problem::refused(reason, advice);
+            let reason = "a quasi-static sequence has no accelerations and no moving cage. Hint: leave it out, or write method = \"reduced\" or \"explicit\" in [housing]";
+            let problem = Problem::refused(reason);
             return Err(document.error_of_name("sensor", name, problem));
         }
         let sensor = sensor(document, name, scene)?;
@@ -61,14 +43,13 @@ pub(crate) fn add_sensors(
 pub(crate) fn refuse_sensors(document: &Document) -> Result<(), SceneError> {
     refuse_nameless(document)?;
     let Some(name) = document.names("sensor").next() else { return Ok(()) };
-    let reason = "a sensor is for bearings and the bodies under them";
-    let advice = "record places of a solid with [[solid.probe]]";
-    Err(document.error_of_name("sensor", name, Problem::refused(reason, advice)))
+    let reason = "a sensor is for bearings and the bodies under them. Hint: record places of a solid with [[solid.probe]]";
+    Err(document.error_of_name("sensor", name, Problem::refused(reason)))
 }
 
 fn refuse_nameless(document: &Document) -> Result<(), SceneError> {
     if document.names("sensor").next().is_none() && document.first_below("sensor").is_some() {
-        return Err(document.refused("sensor", "a sensor has a name", "write [sensor.NAME]"));
+        return Err(document.refused("sensor", "a sensor has a name. Hint: write [sensor.NAME]"));
     }
     Ok(())
 }
@@ -80,18 +61,11 @@ fn sensor(
 ) -> Result<SceneSensor, SceneError> {
     let scoped = document.scoped(name);
     let mut reader = Reader::new(&scoped);
+    refuse_unused(&scoped, &["sensor"])?;
     let of_telemeter = match reader.choice_if_given("sensor.kind") {
         Some(kind) => kind == SENSORS[1],
         None => return Err(reader.missing("sensor.kind", "")),
     };
-    let others: &[&str] = if of_telemeter { &OF_AN_ACCELEROMETER } else { &OF_A_TELEMETER };
-    let mut others = others.iter().map(|key| format!("sensor.{key}"));
-    if let Some(other) = others.find(|key| reader.is_given(key)) {
-        let kind = SENSORS[usize::from(of_telemeter)];
-        let reason = format!("not of kind = \"{kind}\"");
-        let advice = "leave it out, or write the other kind of sensor";
-        return Err(scoped.refused(&other, reason, advice));
-    }
     let kind = match of_telemeter {
         true => telemeter(&mut reader, scene)?,
         false => accelerometer(&mut reader, scene)?,
@@ -106,34 +80,41 @@ fn acquisition(reader: &mut Reader, scene: &AssemblyScene) -> Result<Acquisition
     let rows = scene.run().map_or(f64::INFINITY, |run| 1.0 / run.output_interval);
     let [sampling, low_pass] =
         ["sensor.sampling", "sensor.low_pass"].map(|key| reader.given_number(key));
-    let refuse =
-        |key: &str, reason: String, advice: &str| Err(reader.document.refused(key, reason, advice));
+    let refuse = |key: &str, reason: String| Err(reader.document.refused(key, reason));
     let hertz = |frequency: f64| format!("{} Hz", to_digits(frequency, 6));
     if let Some(rate) = sampling.filter(|rate| *rate > rows * (1.0 + 1e-9)) {
-        let reason = format!("{} is faster than the output rows, {}", hertz(rate), hertz(rows));
-        let advice = "sample more slowly, or shorten numerics.output_interval";
-        return refuse("sensor.sampling", reason, advice);
+        let reason = format!(
+            "{} is faster than the output rows, {}. Hint: sample more slowly, or shorten numerics.output_interval",
+            hertz(rate),
+            hertz(rows)
+        );
+        return refuse("sensor.sampling", reason);
     }
     if let Some(cut_off) = low_pass.filter(|cut_off| *cut_off >= 0.5 * rows) {
         let half = hertz(0.5 * rows);
-        let reason =
-            format!("{} is not below half the rate of the output rows, {half}", hertz(cut_off));
-        let advice = "filter lower, or shorten numerics.output_interval";
-        return refuse("sensor.low_pass", reason, advice);
+        let reason = format!(
+            "{} is not below half the rate of the output rows, {half}. Hint: filter lower, or shorten numerics.output_interval",
+            hertz(cut_off)
+        );
+        return refuse("sensor.low_pass", reason);
     }
     let envelope_band = match reader.document.value("sensor.envelope_band") {
         Some(Checked::Quantities(band)) => match band[..] {
             [low, high] if high <= 0.5 * sampling.unwrap_or(rows) => Some([low, high]),
             [_, high] => {
                 let half = hertz(0.5 * sampling.unwrap_or(rows));
-                let reason = format!("{} is above half the sampling rate, {half}", hertz(high));
-                let advice = "choose a lower band, or sample faster";
-                return refuse("sensor.envelope_band", reason, advice);
+                let reason = format!(
+                    "{} is above half the sampling rate, {half}. Hint: choose a lower band, or sample faster",
+                    hertz(high)
+                );
+                return refuse("sensor.envelope_band", reason);
             }
             _ => {
-                let reason = format!("a band has two frequencies, not {}", band.len());
-                let advice = "write envelope_band = [\"1 kHz\", \"4 kHz\"]";
-                return refuse("sensor.envelope_band", reason, advice);
+                let reason = format!(
+                    "a band has two frequencies, not {}. Hint: write envelope_band = [\"1 kHz\", \"4 kHz\"]",
+                    band.len()
+                );
+                return refuse("sensor.envelope_band", reason);
             }
         },
         _ => None,
@@ -154,50 +135,42 @@ fn accelerometer(
     };
     if matches!(at, SensorAt::Housing(_)) && scene.housing_method() != Some(HousingMethod::Reduced)
     {
-        let reason = "an accelerometer on a housing needs its modes";
-        let advice = "write method = \"reduced\" in [housing], or put the sensor on the outer race";
-        return Err(reader.document.refused("sensor.on", reason, advice));
+        let reason = "an accelerometer on a housing needs its modes. Hint: write method = \"reduced\" in [housing], or put the sensor on the outer race";
+        return Err(reader.document.refused("sensor.on", reason));
     }
-    let mut number = |key: &str| reader.number(key).unwrap_or(0.0);
+    let mut number = |key: &str| reader.number(key);
     let (along, radius) = (number("sensor.at"), number("sensor.radius"));
     let angle = number("sensor.angle");
     if let SensorAt::Body(body) = at
         && let Some(beam) = &scene.bodies[*body].beam
     {
         if beam.in_elements.is_some() {
-            let reason = format!("{on} is stepped in elements, which carry no accelerometer");
-            let advice =
-                "record its sections with `probe`, or write method = \"reduced\" in its beam.mesh";
-            return Err(reader.document.refused("sensor.on", reason, advice));
+            let reason = format!(
+                "{on} is stepped in elements, which carry no accelerometer. Hint: record its sections with `probe`, or write method = \"reduced\" in its beam.mesh"
+            );
+            return Err(reader.document.refused("sensor.on", reason));
         }
         let ends = [beam.start, beam.start + beam.beam.length()];
         if let Some(problem) = beside(along, ends, &on) {
             return Err(reader.document.error("sensor.at", problem));
         }
     }
-    let direction = direction(reader)?;
+    let direction = direction(reader);
     Ok(SceneSensorKind::Accelerometer { at: *at, along, radius, angle, direction })
 }
 
-fn direction(reader: &mut Reader) -> Result<Direction, SceneError> {
-    const ANGLES: [&str; 2] = ["sensor.azimuth", "sensor.elevation"];
-    let direction = match reader.choice("sensor.direction") {
-        Some("fixed") => {
-            let [azimuth, elevation] =
-                ANGLES.map(|key| reader.given_number(key).unwrap_or_default());
-            return Ok(Direction::Fixed { azimuth, elevation });
+fn direction(reader: &mut Reader) -> Direction {
+    match reader.choice("sensor.direction") {
+        "fixed" => {
+            let [azimuth, elevation] = ["sensor.azimuth", "sensor.elevation"]
+                .map(|key| reader.given_number(key).unwrap_or_default());
+            reader.follow("sensor.azimuth", azimuth);
+            reader.follow("sensor.elevation", elevation);
+            Direction::Fixed { azimuth, elevation }
         }
-        Some("tangential") => Direction::Tangential,
-        Some("axial") => Direction::Axial,
+        "tangential" => Direction::Tangential,
+        "axial" => Direction::Axial,
         _ => Direction::Radial,
-    };
-    match ANGLES.into_iter().find(|key| reader.is_given(key)) {
-        None => Ok(direction),
-        Some(key) => {
-            let reason = "the direction of this sensor rotates with its body";
-            let advice = "write direction = \"fixed\", or leave it out";
-            Err(reader.document.refused(key, reason, advice))
-        }
     }
 }
 
@@ -224,12 +197,12 @@ fn places(scene: &AssemblyScene) -> Vec<(String, SensorAt)> {
 
 fn no_such_place(on: &str, places: &[(String, SensorAt)]) -> Problem {
     let known: Vec<&str> = places.iter().map(|(name, _)| name.as_str()).collect();
-    let advice = match nearest(on, known.iter().copied(), 0.5) {
+    let hint = match nearest(on, known.iter().copied(), 0.5) {
         Some(nearest) => format!("did you mean {nearest}?"),
         None => "write one of them; an outer race is one where it moves by itself".into(),
     };
-    let reason = format!("{on:?} is no mount of a sensor; mounts are: {}", known.join(", "));
-    Problem::refused(reason, advice)
+    let mounts = known.join(", ");
+    Problem::refused(format!("{on:?} is no mount of a sensor; mounts are: {mounts}. Hint: {hint}"))
 }
 
 fn telemeter(reader: &mut Reader, scene: &AssemblyScene) -> Result<SceneSensorKind, SceneError> {
@@ -248,13 +221,14 @@ fn telemeter(reader: &mut Reader, scene: &AssemblyScene) -> Result<SceneSensorKi
     let cage = match &scene.bearings[bearing].scene.dynamics.cage {
         CageInRun::Body(cage) => cage,
         CageInRun::LeftOut(why) => {
-            let reason = format!("a telemeter is mounted on a cage, and there is none: {why}");
-            let advice = "give the bearing a cage with its mass, or leave the telemeter out";
-            return Err(reader.document.refused("sensor.kind", reason, advice));
+            let reason = format!(
+                "a telemeter is mounted on a cage, and there is none: {why}. Hint: give the bearing a cage with its mass, or leave the telemeter out"
+            );
+            return Err(reader.document.refused("sensor.kind", reason));
         }
     };
     let [inner, outer] = cage.contacts.ring;
-    let mut number = |key: &str| reader.number(key).unwrap_or(0.0);
+    let mut number = |key: &str| reader.number(key);
     let distance = number("sensor.distance");
     let offset = [number("sensor.offset"), number("sensor.offset_angle")];
     let runout = [number("sensor.runout"), number("sensor.runout_angle")];
@@ -267,6 +241,10 @@ fn telemeter(reader: &mut Reader, scene: &AssemblyScene) -> Result<SceneSensorKi
     let copper = |radius: f64| copper_resistance(radius, wire_radius, frequency);
     let own = given("sensor.resistance").unwrap_or_else(|| copper(radius));
     let resistance = [own, copper(transceiver_radius)];
+    reader.follow("sensor.loop_radius", radius);
+    reader.follow("sensor.transceiver_radius", transceiver_radius);
+    reader.follow("sensor.frequency", frequency);
+    reader.follow("sensor.resistance", own);
     let circuit =
         Telemeter { radius, transceiver_radius, wire_radius, capacitance, resistance, frequency };
     Ok(SceneSensorKind::Telemeter { bearing, circuit, distance, offset, runout })

@@ -6,116 +6,27 @@ use crate::mesh::generate::{
 };
 use crate::mesh::read::LengthUnit;
 use crate::scene::error::{Problem, SceneError};
-use crate::scene::resolve::bearing::Reader;
+use crate::scene::resolve::bearing::{Reader, text};
+use crate::scene::resolve::dynamics::millimetres;
 use crate::scene::resolve::solid_scene::MeshSource;
+use crate::scene::resolve::unused::refuse_unused;
+use crate::scene::tables::keys;
+use crate::scene::tables::keys::{KEYS, Key};
+use crate::scene::tables::solid::{GENERATE, GENERATORS};
 use crate::scene::text::value::Checked;
 use std::path::Path;
 
-/// Dimensions and cells of each generator; `?` marks optional ones.
-const KEYS_OF: &[(&str, &[&str])] = &[
-    ("bar", &["length", "width", "height", "cells.along", "cells.across", "cells.up"]),
-    ("block", &["half_width", "cells.per_half_width", "cells.deep", "cells.growth?"]),
-    (
-        "ring",
-        &[
-            "inner_radius",
-            "outer_radius",
-            "width",
-            "cells.around",
-            "cells.radial",
-            "cells.axial",
-            "cells.growth?",
-        ],
-    ),
-    ("shaft", &["radius", "length?", "stations?", "cells.along", "cells.around", "cells.radial"]),
-    (
-        "cage",
-        &[
-            "pockets",
-            "pocket_radius",
-            "inner_radius",
-            "outer_radius",
-            "width",
-            "relief.depth?",
-            "relief.belt_width?",
-            "cells.quarter",
-            "cells.bar",
-            "cells.wall",
-        ],
-    ),
-    ("housing-a", &["bore_radius", "side", "depth", AROUND, RADIAL, AXIAL, GROWTH]),
-    ("housing-b", PILLOW_BLOCK),
-    ("housing-c", PILLOW_BLOCK),
-    ("housing-d", &["bore_radius", "outer_radius", "depth", AROUND, RADIAL, AXIAL, GROWTH]),
-    (
-        "bushing",
-        &[
-            "inner_diameter",
-            "outer_diameter",
-            "length",
-            "part?",
-            AROUND,
-            RADIAL,
-            AXIAL,
-            "cells.grading?",
-        ],
-    ),
-];
-const AROUND: &str = "cells.around";
-const RADIAL: &str = "cells.radial";
-const AXIAL: &str = "cells.axial";
-const GROWTH: &str = "cells.growth?";
-const PILLOW_BLOCK: &[&str] = &[
-    "bore_radius",
-    "outer_radius?",
-    "depth",
-    "centre_height?",
-    "base_width?",
-    "base_height?",
-    "neck_width?",
-    "fillet_radius?",
-    AROUND,
-    RADIAL,
-    AXIAL,
-    GROWTH,
-];
-/// Keys of `[solid.mesh]` that are not dimensions.
-const GENERAL: &[&str] = &[
-    "file",
-    "generate",
-    "unit",
-    "origin",
-    "axis",
-    "order",
-    "renumber",
-    "repair",
-    "cavities",
-    "largest_aspect",
-];
-
-/// Names of dimensions in errors of generators, and their keys below `solid.mesh`.
+/// Names of dimensions in errors of generators that are not those of their keys, and these keys below `solid.mesh`.
 pub const KEY_OF_DIMENSION: &[(&str, &str)] = &[
-    ("inner radius", "inner_radius"),
-    ("outer radius", "outer_radius"),
-    ("width", "width"),
     ("half contact width", "half_width"),
     ("radius of the shaft", "radius"),
     ("stations of the shaft", "stations"),
     ("distance of two stations", "stations"),
     ("longest layer", "cells.along"),
     ("layers between two stations", "cells.along"),
-    ("pockets", "pockets"),
-    ("pocket radius", "pocket_radius"),
     ("relief of the rails", "relief.depth"),
     ("width of the belt", "relief.belt_width"),
-    ("bore radius", "bore_radius"),
     ("side of the housing", "side"),
-    ("depth", "depth"),
-    ("centre height", "centre_height"),
-    ("base width", "base_width"),
-    ("base height", "base_height"),
-    ("neck width", "neck_width"),
-    ("fillet radius", "fillet_radius"),
     ("cells around", "cells.around"),
     ("cells around the bore", "cells.around"),
     ("cells around the shaft", "cells.around"),
@@ -129,38 +40,33 @@ pub const KEY_OF_DIMENSION: &[(&str, &str)] = &[
     ("cells along the depth", "cells.deep"),
     ("growth of radial steps", "cells.growth"),
     ("growth of steps", "cells.growth"),
-    ("inner diameter", "inner_diameter"),
     ("thickness", "outer_diameter"),
-    ("length", "length"),
     ("grading", "cells.grading"),
 ];
 
 /// The key below `solid.mesh` of a dimension in an error of a generator; `None` if it depends on several.
 pub fn key_of_dimension(what: &str) -> Option<&'static str> {
-    KEY_OF_DIMENSION.iter().find(|(known, _)| *known == what).map(|(_, key)| *key)
+    let own = || keys::find(&format!("solid.mesh.{}", what.replace(' ', "_")));
+    let other = KEY_OF_DIMENSION.iter().find(|(known, _)| *known == what);
+    other.map(|(_, key)| *key).or_else(|| own().map(|(_, key)| key.name()))
 }
 
 /// The generators and the keys of each, for the reference.
 pub(crate) fn generators() -> impl Iterator<Item = (&'static str, String)> {
-    KEYS_OF.iter().map(|(name, keys)| {
-        let keys: Vec<String> = keys
-            .iter()
-            .map(|key| match key.strip_suffix('?') {
-                Some(key) => format!("(`{key}`)"),
-                None => format!("`{key}`"),
-            })
-            .collect();
-        (*name, keys.join(", "))
+    GENERATORS.iter().map(|generator| {
+        let used = |key: &&Key| {
+            key.only.is_some_and(|(choice, of)| choice == GENERATE && of.contains(generator))
+        };
+        let name = |key: &Key| format!("`{}`", key.path.trim_start_matches("solid.mesh."));
+        let keys: Vec<String> = KEYS.iter().filter(used).map(name).collect();
+        (*generator, keys.join(", "))
     })
 }
 
 pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
-    let file = match reader.document.value("solid.mesh.file") {
-        Some(Checked::Text(file)) => Some(file.clone()),
-        _ => None,
-    };
-    let generator = reader.choice_if_given("solid.mesh.generate");
-    refuse_without_effect_on(reader, generator)?;
+    let file = text(reader.document, "solid.mesh.file");
+    let generator = reader.choice_if_given(GENERATE);
+    refuse_unused(reader.document, &["solid.mesh"])?;
     match (file, generator) {
         (Some(file), _) => {
             let unit = match reader.choice_if_given("solid.mesh.unit") {
@@ -173,19 +79,17 @@ pub(crate) fn source(reader: &mut Reader) -> Result<MeshSource, SceneError> {
                 }
             };
             if !["msh", "inp"].contains(&extension(&file).as_str()) {
-                let reason = "the extension of the name states the format, and this one is unknown";
-                let advice = "name a Gmsh file .msh, an Abaqus or CalculiX input file .inp";
-                return Err(reader.document.refused("solid.mesh.file", reason, advice));
+                let reason = "the extension of the name states the format, and this one is unknown. Hint: name a Gmsh file .msh, an Abaqus or CalculiX input file .inp";
+                return Err(reader.document.refused("solid.mesh.file", reason));
             }
             let (path, name) = reader.document.file("solid.mesh.file", &file);
             Ok(MeshSource::File { path, name, unit })
         }
         (None, Some(generator)) => {
+            refuse_keys_of_files(reader)?;
             if !reader.is_given("solid.mesh.order") {
                 let because = " with `generate`: 1 for four-node, 2 for ten-node tetrahedra";
-                let example = "`order = 2` to [solid.mesh]".to_string();
-                let problem = Problem::Missing { because: because.to_string(), example };
-                return Err(reader.document.error("solid.mesh.order", problem));
+                return Err(reader.missing("solid.mesh.order", because));
             }
             generated(reader, generator)
         }
@@ -205,23 +109,11 @@ pub(crate) fn extension(file: &str) -> String {
     ending.unwrap_or_default().to_ascii_lowercase()
 }
 
-/// Refuses dimensions without effect on the chosen source.
-fn refuse_without_effect_on(reader: &Reader, generator: Option<&str>) -> Result<(), SceneError> {
-    let own = KEYS_OF.iter().find(|(name, _)| Some(*name) == generator).map(|(_, keys)| *keys);
-    for key in reader.document.given_keys() {
-        let Some(name) = key.path.strip_prefix("solid.mesh.") else { continue };
-        let of_file = ["unit", "repair", "cavities"].contains(&name) && generator.is_some();
-        let taken = own.is_some_and(|keys| keys.iter().any(|k| k.trim_end_matches('?') == name));
-        if of_file || !(taken || GENERAL.contains(&name)) {
-            let reason = match generator {
-                Some(_) => "this generator does not use it",
-                None => "a mesh from a file does not use it",
-            };
-            let advice = match own {
-                Some(keys) => format!("it takes {}", keys.join(", ").replace('?', "")),
-                None => "leave it out".to_string(),
-            };
-            return Err(reader.document.refused(key.path, reason, advice));
+/// Refuses keys of a file beside a generator.
+fn refuse_keys_of_files(reader: &Reader) -> Result<(), SceneError> {
+    for key in ["unit", "repair", "cavities"].map(|key| format!("solid.mesh.{key}")) {
+        if reader.is_given(&key) {
+            return Err(reader.document.refused(&key, "only with `file`"));
         }
     }
     Ok(())
@@ -234,7 +126,7 @@ fn generated(reader: &mut Reader, generator: &str) -> Result<MeshSource, SceneEr
     let cells = |reader: &Reader, key: &str| {
         size(reader, &format!("cells.{key}")).map(|count| count as usize)
     };
-    let growth = |reader: &mut Reader| reader.number("solid.mesh.cells.growth").unwrap_or(1.0);
+    let growth = |reader: &mut Reader| reader.number("solid.mesh.cells.growth");
     Ok(match generator {
         "bar" => MeshSource::Bar {
             size: [size(reader, "length")?, size(reader, "width")?, size(reader, "height")?],
@@ -261,13 +153,6 @@ fn generated(reader: &mut Reader, generator: &str) -> Result<MeshSource, SceneEr
         ),
         "shaft" => {
             let stations = match reader.document.value("solid.mesh.stations") {
-                Some(Checked::Quantities(_)) if reader.is_given("solid.mesh.length") => {
-                    let problem = Problem::Exclusive {
-                        rival: "solid.mesh.length".to_string(),
-                        advice: "keep `length` or `stations`".to_string(),
-                    };
-                    return Err(reader.document.error("solid.mesh.stations", problem));
-                }
                 Some(Checked::Quantities(stations)) => stations.clone(),
                 _ => vec![0.0, size(reader, "length")?],
             };
@@ -311,19 +196,22 @@ fn generated(reader: &mut Reader, generator: &str) -> Result<MeshSource, SceneEr
             let thickness = 0.5 * (outer_diameter - inner_diameter);
             let thick = thickness > 0.0;
             if !thick {
-                let reason = "it is no larger than the inner diameter";
-                let advice = "give a larger one; both are those of the rubber";
-                return Err(reader.document.refused("solid.mesh.outer_diameter", reason, advice));
+                let reason = "it is no larger than the inner diameter. Hint: give a larger one; both are those of the rubber";
+                return Err(reader.document.refused("solid.mesh.outer_diameter", reason));
             }
             let part = match reader.choice_if_given("solid.mesh.part") {
                 Some("quarter") => Part::Quarter,
                 _ => Part::Whole,
             };
+            let grading = reader.given_number("solid.mesh.cells.grading").unwrap_or(1.0);
+            reader.follow("solid.mesh.cells.grading", grading);
+            reader
+                .follow("solid.mesh.part", if part == Part::Quarter { "quarter" } else { "whole" });
             let mesh = BushingMesh {
                 around: cells(reader, "around")?,
                 radial: cells(reader, "radial")?,
                 axial: cells(reader, "axial")?,
-                grading: reader.given_number("solid.mesh.cells.grading").unwrap_or(1.0),
+                grading,
                 part,
             };
             let length = size(reader, "length")?;
@@ -370,13 +258,8 @@ fn pillow_block(reader: &mut Reader, bore_radius: f64, depth: f64) -> PillowBloc
     ];
     for (name, size) in sizes {
         let key = format!("solid.mesh.{name}");
-        match reader.given_number(&key) {
-            Some(given) => *size = given,
-            None => {
-                let value = crate::scene::resolve::dynamics::millimetres(*size);
-                reader.note(&key, &value, "in proportion to the bore; the source's figure is lost");
-            }
-        }
+        let reason = "in proportion to the bore; the source's figure is lost";
+        *size = reader.number_or(&key, *size, &millimetres(*size), reason);
     }
     block
 }

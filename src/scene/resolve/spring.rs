@@ -8,7 +8,7 @@ use crate::scene::error::{Problem, SceneError};
 use crate::scene::resolve::bearing::{Reader, text};
 use crate::scene::resolve::bushing::bushing;
 use crate::scene::resolve::resolved::DefaultUsed;
-use crate::scene::resolve::solid::{item_number, missing};
+use crate::scene::resolve::unused::refuse_unused;
 use crate::scene::tables::assembly::{GROUND, OWN_RACES};
 use crate::scene::tables::keys::nearest;
 use crate::scene::text::document::Document;
@@ -22,6 +22,7 @@ pub(crate) fn spring(
     defaults: &mut Vec<DefaultUsed>,
 ) -> Result<Spring, SceneError> {
     let scoped = document.scoped(name);
+    refuse_unused(&scoped, &["spring"])?;
     let mut reader = Reader::new(&scoped);
     let end = |reader: &Reader, key: &str| -> Result<SpringAt, SceneError> {
         match text(reader.document, key).as_deref() {
@@ -39,18 +40,19 @@ pub(crate) fn spring(
         reader.note_default("spring.to");
     }
     if from == to {
-        let reason = "both ends are at the same body";
-        let advice = "a spring joins two bodies, or a body and the ground";
-        return Err(scoped.refused("spring.to", reason, advice));
+        let reason = "both ends are at the same body. Hint: a spring joins two bodies, or a body and the ground";
+        return Err(scoped.refused("spring.to", reason));
     }
     // Both ends at one position; at that of a race if one end is a race.
     let [from_x, to_x] = [from, to].map(|at| race_at(bearings, at));
     let along = match from {
-        SpringAt::Race { .. } => reader.number("spring.from_at").unwrap_or(0.0),
+        SpringAt::Race { .. } => reader.number("spring.from_at"),
         _ if to_x != 0.0 => reader.given_number("spring.from_at").unwrap_or(to_x),
-        _ => reader.number("spring.from_at").unwrap_or(0.0),
+        _ => reader.number("spring.from_at"),
     };
     let to_along = reader.given_number("spring.to_at").unwrap_or(from_x + along - to_x);
+    reader.follow("spring.from_at", along);
+    reader.follow("spring.to_at", to_along);
     let six = |what: &str| {
         SIX.map(|name| reader.given_number(&format!("spring.{what}.{name}")).unwrap_or(0.0))
     };
@@ -90,7 +92,7 @@ fn race(
     bodies: &[&str],
     bearings: &[PlacedBearing],
 ) -> Result<SpringAt, SceneError> {
-    let refused = |reason: &str, advice: &str| reader.document.refused(key, reason, advice);
+    let refused = |reason: String| reader.document.refused(key, reason);
     let (of, race) = name.split_once('.').map_or((None, name), |(of, race)| (Some(of), race));
     let side = OWN_RACES.iter().position(|own| *own == race);
     let bearing = match of {
@@ -102,23 +104,24 @@ fn race(
         if side.is_some() && of.is_none() {
             let each = bearings.iter().filter_map(|placed| placed.name.as_ref());
             let each: Vec<String> = each.map(|name| format!("{name}.{race}")).collect();
-            let advice = format!("write one of {}", each.join(", "));
-            return Err(refused("there are several bearings", &advice));
+            return Err(refused(format!(
+                "there are several bearings. Hint: write one of {}",
+                each.join(", ")
+            )));
         }
         return Err(reader.document.error(key, no_such_end(name, bodies, bearings)));
     };
     let placed = &bearings[bearing];
     if let Carrier::Body { index, .. } = placed.carriers[side] {
-        let advice = format!("write {:?}", bodies[index]);
-        return Err(refused(&format!("this race is on body.{}", bodies[index]), &advice));
+        return Err(refused(format!("this race is on body.{0}. Hint: write {0:?}", bodies[index])));
     }
     if side == 1 && placed.housing.is_some() {
-        let advice = "join the spring to a body, or leave the housing out";
-        return Err(refused("the outer race is in the bore of its housing", advice));
+        return Err(refused("the outer race is in the bore of its housing. Hint: join the spring to a body, or leave the housing out".into()));
     }
     if side == 1 && placed.scene.dynamics.outer.is_none() {
-        let advice = "write `motion = \"5-dof\"` in [outer_race]";
-        return Err(refused("the outer race is fixed", advice));
+        return Err(refused(
+            "the outer race is fixed. Hint: write `motion = \"5-dof\"` in [outer_race]".into(),
+        ));
     }
     Ok(SpringAt::Race { bearing, side })
 }
@@ -136,21 +139,19 @@ fn no_such_end(name: &str, bodies: &[&str], bearings: &[PlacedBearing]) -> Probl
         }
     }
     known.push(GROUND.into());
-    let advice = match nearest(name, known.iter().map(String::as_str), 0.5) {
+    let hint = match nearest(name, known.iter().map(String::as_str), 0.5) {
         Some(nearest) => format!("did you mean {nearest}?"),
         None => "write one of them; a race is named if it moves by itself".into(),
     };
-    let reason = format!("{name:?} is no end of a spring; ends are: {}", known.join(", "));
-    Problem::refused(reason, advice)
+    let ends = known.join(", ");
+    Problem::refused(format!("{name:?} is no end of a spring; ends are: {ends}. Hint: {hint}"))
 }
 
 fn maxwell(item: ItemRef) -> Result<MaxwellElement, SceneError> {
-    let Some(relaxation_time) = item_number(item, "relaxation_time") else {
-        return Err(missing(item, "relaxation_time", "", "relaxation_time = \"10 ms\""));
-    };
-    let stiffness = SIX.map(|name| item_number(item, name).unwrap_or(0.0));
+    let relaxation_time = item.required("relaxation_time")?;
+    let stiffness = SIX.map(|name| item.number(name).unwrap_or(0.0));
     if stiffness == [0.0; 6] {
-        return Err(missing(item, "z", ", nothing relaxes", "z = \"2e6 N/m\""));
+        return Err(item.missing("z", ", nothing relaxes"));
     }
     Ok(MaxwellElement { stiffness, relaxation_time })
 }

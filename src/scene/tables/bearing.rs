@@ -1,7 +1,8 @@
 //! Rows of the key table: geometry and materials, conditions on the races, outputs.
 
 use crate::scene::tables::keys::{
-    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, Table, above, closed, list_table, open, table,
+    DEFAULT_SETS, DEFAULTS, Key, Kind, Need, Range, SI, Table, UNITS, above, closed, list_table,
+    open, table,
 };
 use crate::scene::text::units::Dimension::{
     Acceleration, Angle, Density, Force, Length, Mass, Moment, RotationSpeed, Stress,
@@ -86,6 +87,8 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("base", Kind::Text, Optional, "Scene file that this scene inherits, relative to this file. Keys given here override those of the base."),
     Key::new("without", Kind::Text, Optional, "Keys, tables (`solid.mesh`) and named tables (`sensor.top`) of the base that are not inherited, separated by commas."),
 
+    Key::new(UNITS, Kind::Choice(&[SI]), Optional, "With `SI`, quantities are numbers in SI units (m, kg, s, N, rad, Pa), as in `resolved.json`. A quantity may still be a text with its unit."),
+
     Key::new(DEFAULTS, Kind::Choice(DEFAULT_SETS), Default { value: "engineering", reason: "friction and clearance as in real bearings" },
         "Set of defaults of `bearing.hertz`, `bearing.clearance.through`, `traction.points_across` and `traction.differential_sliding`: those of real bearings, or those of the dissertation."),
 
@@ -104,7 +107,7 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("bearing.contact_angle", Kind::Quantity(Angle, open(0.0, 80.0, "deg")),
         Depends("angular-contact: required; deep-groove: not allowed, the angle follows from loads"),
         "Nominal contact angle: angle of the contact line to the radial plane when the parts just touch.")
-        .hint("a bearing without contact angle is a deep-groove bearing; one near 90 deg carries no radial load").example_of("35 deg"),
+        .hint("a bearing without contact angle is a deep-groove bearing; one near 90 deg carries no radial load").example_of("35 deg").only("bearing.kind", &["angular-contact"]),
     quantity("bearing.length", RADIUS, Optional, "Axial length of the bearing; default of `housing.width`, otherwise for information only."),
 
     quantity("bearing.clearance.radial", CLEARANCE, CLEARANCE_NEED,
@@ -116,7 +119,7 @@ pub(crate) const KEYS: &[Key] = &[
         "Part whose size is adjusted to give the clearance. Its given size is then the nominal size; `races`: half through each race."),
 
     quantity("bearing.inner_race.radius", RADIUS, RACE_RADIUS_NEED,
-        "Radius of the groove bottom, measured from the axis.").hint(RADIUS_HINT).example_of("20.047 mm"),
+        "Radius of the groove bottom, measured from the axis.").hint(RADIUS_HINT).example_of("20.047 mm").only("bearing.kind", &["deep-groove"]),
     quantity("bearing.inner_race.groove_radius", RADIUS, ONE_CONFORMITY,
         "Radius of the groove's cross-section.").group("groove").hint(GROOVE_HINT).example_of("6.2 mm"),
     Key::new("bearing.inner_race.conformity", CONFORMITY, ONE_CONFORMITY,
@@ -130,7 +133,7 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("bearing.inner_race.material.density", DENSITY, STEEL_DENSITY, "Density.").hint(DENSITY_HINT),
 
     quantity("bearing.outer_race.radius", RADIUS, RACE_RADIUS_NEED,
-        "Radius of the groove bottom, measured from the axis.").hint(RADIUS_HINT).example_of("31.953 mm"),
+        "Radius of the groove bottom, measured from the axis.").hint(RADIUS_HINT).example_of("31.953 mm").only("bearing.kind", &["deep-groove"]),
     quantity("bearing.outer_race.groove_radius", RADIUS, ONE_CONFORMITY,
         "Radius of the groove's cross-section.").group("groove").hint(GROOVE_HINT).example_of("6.2 mm"),
     Key::new("bearing.outer_race.conformity", CONFORMITY, ONE_CONFORMITY,
@@ -185,7 +188,7 @@ pub(crate) const KEYS: &[Key] = &[
         Depends("1/4 of the diameter"),
         "Width of the shoulder outside the pit.").hint(DENT_HINT).example_of("125 um"),
     Key::new("bearing.spall.on", Kind::Choice(PROFILED), Required, "Part with the spall: a race, or a ball."),
-    Key::new("bearing.spall.ball", Kind::Integer { low: 1, high: 200 }, PROFILED_BALL_NEED, "Number of the ball."),
+    Key::new("bearing.spall.ball", Kind::Integer { low: 1, high: 200 }, PROFILED_BALL_NEED, "Number of the ball.").only("bearing.spall.on", &["ball"]),
     quantity("bearing.spall.angle", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), Required,
         "Azimuth of the spall on the race, from the race's own Y towards its Z; the spall rotates with the race. On a ball: azimuth about the ball's X, from its Y towards its Z; at the start the ball's axes are those of the scene.").example_of("270 deg"),
     quantity("bearing.spall.groove_angle", Kind::Quantity(Angle, closed(-90.0, 90.0, "deg")),
@@ -194,7 +197,7 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("bearing.spall.length", Kind::Quantity(Length, closed(0.0, 100.0, "mm")), Required,
         "Length in the rolling direction between the beginnings of the rounded edges, at most the ball radius; diameter on a ball. 0 for no spall.").hint(SPALL_HINT).example_of("2 mm"),
     quantity("bearing.spall.width", Kind::Quantity(Length, open(0.0, 100.0, "mm")), PROFILED_NEED,
-        "Width across the rolling direction. The depth is constant in the middle half of the width, and falls to zero at the sides.").hint(SPALL_HINT).example_of("4 mm"),
+        "Width across the rolling direction. The depth is constant in the middle half of the width, and falls to zero at the sides.").hint(SPALL_HINT).example_of("4 mm").only("bearing.spall.on", &["outer", "inner"]),
     quantity("bearing.spall.edge_radius", Kind::Quantity(Length, closed(0.0, 100.0, "mm")),
         Default { value: "1 mm", reason: "r of Fig. 5.29" }, "Radius r of the rounded edges.").hint(SPALL_HINT),
     quantity("bearing.spall.floor_radius", Kind::Quantity(Length, open(0.0, 10_000.0, "mm")),
@@ -204,18 +207,18 @@ pub(crate) const KEYS: &[Key] = &[
         Depends("from `floor_radius`"),
         "Depth of the floor, which determines its radius. 0 for no spall.").group("floor").hint(SPALL_HINT).example_of("0.07 mm"),
     Key::new("bearing.waviness.on", Kind::Choice(PROFILED), Required, "Part with the waves: a race, or a ball."),
-    Key::new("bearing.waviness.ball", Kind::Integer { low: 1, high: 200 }, PROFILED_BALL_NEED, "Number of the ball."),
+    Key::new("bearing.waviness.ball", Kind::Integer { low: 1, high: 200 }, PROFILED_BALL_NEED, "Number of the ball.").only("bearing.waviness.on", &["ball"]),
     Key::new("bearing.waviness.order", Kind::Integer { low: 1, high: 1000 }, Required, "Number n of waves on the circumference.").example_of("12"),
     quantity("bearing.waviness.amplitude", Kind::Quantity(Length, closed(0.0, 0.1, "mm")), Required,
         "Amplitude A of the waves, normal to the surface. Crests, where cos(n angle + phase) = 1, increase the overlap of a ball by A. The wave has the same height across the groove.").hint(WAVE_HINT).example_of("0.5 um"),
     quantity("bearing.waviness.phase", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")),
         Default { value: "0 deg", reason: "a crest on the race's own Y; not allowed on a ball" },
-        "Phase of the waves, in the azimuth from the race's own Y towards its Z."),
+        "Phase of the waves, in the azimuth from the race's own Y towards its Z.").only("bearing.waviness.on", &["outer", "inner"]),
     quantity("bearing.waviness.angle", Kind::Quantity(Angle, closed(-360.0, 360.0, "deg")), PROFILED_BALL_NEED,
-        "Azimuth of the pole of a ball's waves about the ball's X, from its Y towards its Z; at the start the ball's axes are those of the scene. The wave is the same on every great circle through the pole.").example_of("0 deg"),
+        "Azimuth of the pole of a ball's waves about the ball's X, from its Y towards its Z; at the start the ball's axes are those of the scene. The wave is the same on every great circle through the pole.").example_of("0 deg").only("bearing.waviness.on", &["ball"]),
     quantity("bearing.waviness.groove_angle", Kind::Quantity(Angle, closed(-90.0, 90.0, "deg")),
         Default { value: "0 deg", reason: "the pole is in the radial plane; not allowed on a race" },
-        "Angle of the pole from the direction of `angle` towards the ball's +X."),
+        "Angle of the pole from the direction of `angle` towards the ball's +X.").only("bearing.waviness.on", &["ball"]),
     quantity("bearing.cage.mass", Kind::Quantity(Mass, open(0.0, 10_000.0, "kg")), Optional, "Mass of the cage."),
     Key::new("bearing.cage.guidance", Kind::Choice(GUIDANCE), Optional, "Part that guides the cage."),
 

@@ -6,6 +6,7 @@ use crate::scene::tables::bearing::{
     POISSON_HINT, RADIUS, RADIUS_HINT, SPIN, STEEL_DENSITY, TILT, TILT_HINT, quantity,
 };
 use crate::scene::tables::keys::{Key, Kind, Need, Table, above, closed, open, table};
+use crate::scene::tables::solid::{ELASTIC, LAW};
 use crate::scene::text::units::Dimension;
 use crate::scene::text::units::Dimension::{
     Angle, Frequency, HertzStiffness, InverseSpeed, Mass, Rate, Speed, Stiffness, StiffnessPerArea,
@@ -14,6 +15,8 @@ use crate::scene::text::units::Dimension::{
 use Need::{BySet, Default, Depends, Optional};
 
 pub const MOTIONS: &[&str] = &["fixed", "5-dof", "6-dof"];
+const MOTION: &str = "outer_race.motion";
+const MOVES: &[&str] = &["5-dof", "6-dof"];
 pub const POCKETS: &[&str] = &["cylindrical", "spherical"];
 pub const CAGE_LAWS: &[&str] = &["penalty", "hertz"];
 pub const TRACTION_LAWS: &[&str] = &["none", "constant", "slide-to-roll", "slip-speed"];
@@ -156,46 +159,46 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("outer_race.motion", Kind::Choice(MOTIONS),
         Default { value: "fixed", reason: "the outer race does not move" },
         "Motion of the outer race: none; all coordinates but the rotation about its axis, which `speed` prescribes; or all six."),
-    quantity("outer_race.x.load", FORCE, FREE, "Axial force on a moving outer race.").group("x").hint(LOAD_HINT),
+    quantity("outer_race.x.load", FORCE, FREE, "Axial force on a moving outer race.").group("x").hint(LOAD_HINT).only(MOTION, MOVES),
     quantity("outer_race.x.displacement", DISPLACEMENT, FREE, "Prescribed displacement; constant if the race is fixed.").group("x"),
-    quantity("outer_race.y.load", FORCE, FREE, "Lateral force on a moving outer race.").group("y").hint(LOAD_HINT),
+    quantity("outer_race.y.load", FORCE, FREE, "Lateral force on a moving outer race.").group("y").hint(LOAD_HINT).only(MOTION, MOVES),
     quantity("outer_race.y.displacement", DISPLACEMENT, FREE, "Prescribed displacement; constant if the race is fixed.").group("y"),
-    quantity("outer_race.z.load", FORCE, FREE, "Vertical force on a moving outer race.").group("z").hint(LOAD_HINT),
+    quantity("outer_race.z.load", FORCE, FREE, "Vertical force on a moving outer race.").group("z").hint(LOAD_HINT).only(MOTION, MOVES),
     quantity("outer_race.z.displacement", DISPLACEMENT, FREE, "Prescribed displacement; constant if the race is fixed.").group("z"),
-    quantity("outer_race.tilt_y.moment", MOMENT, FREE, "Moment about Y on a moving outer race.").group("tilt_y").hint(LOAD_HINT),
+    quantity("outer_race.tilt_y.moment", MOMENT, FREE, "Moment about Y on a moving outer race.").group("tilt_y").hint(LOAD_HINT).only(MOTION, MOVES),
     quantity("outer_race.tilt_y.tilt", TILT, FREE, "Prescribed tilt; constant if the race is fixed.").group("tilt_y").hint(TILT_HINT),
-    quantity("outer_race.tilt_z.moment", MOMENT, FREE, "Moment about Z on a moving outer race.").group("tilt_z").hint(LOAD_HINT),
+    quantity("outer_race.tilt_z.moment", MOMENT, FREE, "Moment about Z on a moving outer race.").group("tilt_z").hint(LOAD_HINT).only(MOTION, MOVES),
     quantity("outer_race.tilt_z.tilt", TILT, FREE, "Prescribed tilt; constant if the race is fixed.").group("tilt_z").hint(TILT_HINT),
     quantity("outer_race.speed", SPIN, Depends("`5-dof`: 0; `6-dof`: not allowed"),
-        "Rotation speed of an outer race with `motion = \"5-dof\"` about its axis.").group("rotation"),
+        "Rotation speed of an outer race with `motion = \"5-dof\"` about its axis.").group("rotation").only("outer_race.motion", &["5-dof"]),
     quantity("outer_race.torque", MOMENT, Depends("`6-dof`: 0; `5-dof`: not allowed"),
-        "Moment about the axis of an outer race with `motion = \"6-dof\"`.").group("rotation").hint(LOAD_HINT),
-    quantity("outer_race.inertia.mass", MASS, ALL_THREE, "Mass of the outer race.").hint(MASS_HINT),
-    quantity("outer_race.inertia.axial", INERTIA, ALL_THREE, "Moment of inertia about its axis.").hint(INERTIA_HINT),
-    quantity("outer_race.inertia.transverse", INERTIA, ALL_THREE, "Moment of inertia about a transverse axis.").hint(INERTIA_HINT),
-    quantity("outer_race.foundation.stiffness.x", FOUNDATION, NO_SPRING, "Stiffness along X.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.stiffness.y", FOUNDATION, NO_SPRING, "Stiffness along Y.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.stiffness.z", FOUNDATION, NO_SPRING, "Stiffness along Z.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.stiffness.tilt_y", TILT_FOUNDATION, NO_TILT_SPRING, "Tilt stiffness about Y.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.stiffness.tilt_z", TILT_FOUNDATION, NO_TILT_SPRING, "Tilt stiffness about Z.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.damping.x", DASHPOT, NO_DASHPOT, "Damping along X.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.damping.y", DASHPOT, NO_DASHPOT, "Damping along Y.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.damping.z", DASHPOT, NO_DASHPOT, "Damping along Z.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.damping.tilt_y", TILT_DASHPOT, NO_TILT_DASHPOT, "Tilt damping about Y.").hint(FOUNDATION_HINT),
-    quantity("outer_race.foundation.damping.tilt_z", TILT_DASHPOT, NO_TILT_DASHPOT, "Tilt damping about Z.").hint(FOUNDATION_HINT),
+        "Moment about the axis of an outer race with `motion = \"6-dof\"`.").group("rotation").hint(LOAD_HINT).only("outer_race.motion", &["6-dof"]),
+    quantity("outer_race.inertia.mass", MASS, ALL_THREE, "Mass of the outer race.").hint(MASS_HINT).only(MOTION, MOVES),
+    quantity("outer_race.inertia.axial", INERTIA, ALL_THREE, "Moment of inertia about its axis.").hint(INERTIA_HINT).only(MOTION, MOVES),
+    quantity("outer_race.inertia.transverse", INERTIA, ALL_THREE, "Moment of inertia about a transverse axis.").hint(INERTIA_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.stiffness.x", FOUNDATION, NO_SPRING, "Stiffness along X.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.stiffness.y", FOUNDATION, NO_SPRING, "Stiffness along Y.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.stiffness.z", FOUNDATION, NO_SPRING, "Stiffness along Z.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.stiffness.tilt_y", TILT_FOUNDATION, NO_TILT_SPRING, "Tilt stiffness about Y.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.stiffness.tilt_z", TILT_FOUNDATION, NO_TILT_SPRING, "Tilt stiffness about Z.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.damping.x", DASHPOT, NO_DASHPOT, "Damping along X.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.damping.y", DASHPOT, NO_DASHPOT, "Damping along Y.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.damping.z", DASHPOT, NO_DASHPOT, "Damping along Z.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.damping.tilt_y", TILT_DASHPOT, NO_TILT_DASHPOT, "Tilt damping about Y.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
+    quantity("outer_race.foundation.damping.tilt_z", TILT_DASHPOT, NO_TILT_DASHPOT, "Tilt damping about Z.").hint(FOUNDATION_HINT).only(MOTION, MOVES),
 
     Key::new("traction.law", Kind::Choice(TRACTION_LAWS),
         Default { value: "slide-to-roll", reason: "the source does not print its friction curve; this is the usual form" },
         "Friction law between balls and races: none; a constant coefficient; an exponential curve over slide-to-roll ratio or sliding speed."),
-    Key::new("traction.coefficient", FRICTION, LAW_NEEDS, "Friction coefficient of `constant`.").hint(FRICTION_HINT).example_of("0.05"),
-    quantity("traction.regularisation_speed", SLIP, LAW_NEEDS, "Sliding speed below which the friction of `constant` is regularised.").hint(SLIP_HINT),
+    Key::new("traction.coefficient", FRICTION, LAW_NEEDS, "Friction coefficient of `constant`.").hint(FRICTION_HINT).example_of("0.05").only("traction.law", &["none", "constant"]),
+    quantity("traction.regularisation_speed", SLIP, LAW_NEEDS, "Sliding speed below which the friction of `constant` is regularised.").hint(SLIP_HINT).only("traction.law", &["none", "constant"]),
     Key::new("traction.b", CURVE_RISE, BOUNDARY,
-        "Rise b of the curve (b x - d) exp(-c x) + d. x is the slide-to-roll ratio (b a plain number) or the sliding speed (b in s/m).").example_of("22.28"),
-    Key::new("traction.c", CURVE_DECAY, BOUNDARY, "Decay c of the curve, in the unit of `b`.").example_of("181.46"),
-    Key::new("traction.d", FRICTION, BOUNDARY, "Friction coefficient d at large x.").hint(FRICTION_HINT).example_of("0.1"),
+        "Rise b of the curve (b x - d) exp(-c x) + d. x is the slide-to-roll ratio (b a plain number) or the sliding speed (b in s/m).").example_of("22.28").only("traction.law", &["none", "slide-to-roll", "slip-speed"]),
+    Key::new("traction.c", CURVE_DECAY, BOUNDARY, "Decay c of the curve, in the unit of `b`.").example_of("181.46").only("traction.law", &["none", "slide-to-roll", "slip-speed"]),
+    Key::new("traction.d", FRICTION, BOUNDARY, "Friction coefficient d at large x.").hint(FRICTION_HINT).example_of("0.1").only("traction.law", &["none", "slide-to-roll", "slip-speed"]),
     quantity("traction.entrainment_floor", SLIP,
         Default { value: "0.01 m/s", reason: "the slide-to-roll ratio is singular at rest" },
-        "Lower bound of the entrainment speed in the slide-to-roll ratio.").hint(SLIP_HINT),
+        "Lower bound of the entrainment speed in the slide-to-roll ratio.").hint(SLIP_HINT).only("traction.law", &["none", "slide-to-roll"]),
     Key::new("traction.slices", Kind::Integer { low: 1, high: 201 }, Default { value: "15", reason: "error 0.6 % in pure spin" },
         "Slices of the contact ellipse along its major axis, over which slip is integrated. One slice with one point has no friction from spin.").hint("the error in pure spin is 0.6 % with 15 slices and 0.06 % with 45; with rolling and spin under a steep law, up to 10 % with 15"),
     Key::new("traction.points_across", Kind::Integer { low: 1, high: 9 }, BySet { dissertation: ("1", "it varies slip along the ellipse only"), engineering: ("3", "friction from spin within 1 %") },
@@ -207,7 +210,7 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("contact_damping.law", Kind::Choice(DAMPING_LAWS), Default { value: "none", reason: "the source states no contact damping" },
         "Damping law of the normal contacts between balls and races."),
     quantity("contact_damping.alpha", Kind::Quantity(InverseSpeed, closed(0.0, 1e4, "s/m")), LAW_NEEDS,
-        "Coefficient of `hunt-crossley`: F = K d^1.5 (1 + 1.5 alpha v).").hint("steel has 0.08 to 0.32 s/m"),
+        "Coefficient of `hunt-crossley`: F = K d^1.5 (1 + 1.5 alpha v).").hint("steel has 0.08 to 0.32 s/m").only("contact_damping.law", &["none", "hunt-crossley"]),
 
     Key::new("ball_contact.law", Kind::Choice(BALL_CONTACT_LAWS),
         Default { value: "hertz", reason: "balls without a cage touch as equal spheres" },
@@ -224,7 +227,7 @@ pub(crate) const KEYS: &[Key] = &[
         "Fixed time step; the integrator is `rk4` unless given. Without it, the step follows from `accuracy`.").group("step").hint(STEP_HINT).example_of("1 us"),
     Key::new("numerics.step_fraction", Kind::Number(above(0.0, 1.0, "")),
         Depends("0.5 with `integrator = \"rk4\"` and no `step`; not allowed with another integrator"),
-        "Time step divided by the stability limit of `rk4`.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5"),
+        "Time step divided by the stability limit of `rk4`.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5").only(LAW, ELASTIC),
     Key::new("numerics.accuracy", Kind::Number(closed(1e-8, 0.1, "")),
         Depends("0.001 without `step`, `step_fraction` and `rk4`; not allowed with `rk4`"),
         "Tolerance of the step-size control: error of the races' motion divided by the largest overlap of a contact.")
@@ -234,7 +237,7 @@ pub(crate) const KEYS: &[Key] = &[
     quantity("numerics.output_interval", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("1/1000 of the run"),
         "Time between output rows.").example_of("0.1 ms"),
     Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Depends("0.01; with an `accuracy` 0.2"),
-        "Largest error of the energy balance, divided by the energy turnover; beyond it the run stops with an error. The turnover is the largest contact energy plus all work and losses; with `accuracy` also the kinetic energy and the energy that passes through the contacts. The balance is checked every 16 steps with `rk4`, otherwise after each step. Five consecutive checks beyond the limit stop the run, in a shorter run the last check.").example_of("0.01"),
+        "Largest error of the energy balance, divided by the energy turnover; beyond it the run stops with an error. The turnover is the largest contact energy plus all work and losses; with `accuracy` also the kinetic energy and the energy that passes through the contacts. The balance is checked every 16 steps with `rk4`, otherwise after each step. Five consecutive checks beyond the limit stop the run, in a shorter run the last check.").example_of("0.01").only(LAW, ELASTIC),
     Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Depends("`rk4` with `step`, `step_fraction` or an explicit housing; otherwise chosen by the plan"),
         "Time integrator: classical Runge-Kutta; the explicit Dormand-Prince method of order 5; a linearly implicit Rosenbrock method for stiff traction and contacts. The latter two take an `accuracy`."),
 

@@ -3,7 +3,6 @@
 //! The reader, the refusal of unknown keys, `docs/scene.md` and the JSON Schema follow this table.
 
 use crate::scene::tables::{assembly, bearing, dynamics, housing, sensor, shaft, solid};
-use crate::scene::text::units::Dimension::*;
 use crate::scene::text::units::{Dimension, parse_quantity};
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -93,6 +92,10 @@ pub enum Need {
     },
 }
 
+/// Key of the units of numbers without one.
+pub const UNITS: &str = "units";
+pub const SI: &str = "SI";
+
 /// Key that chooses the set of defaults.
 pub const DEFAULTS: &str = "defaults";
 pub const DEFAULT_SETS: &[&str] = &["engineering", "dissertation"];
@@ -120,13 +123,15 @@ pub struct Key {
     pub doc: &'static str,
     /// Advice for a value outside the range.
     pub hint: &'static str,
+    /// Path of a key that chooses a kind, law or method, and those of its words that use this key.
+    pub only: Option<(&'static str, &'static [&'static str])>,
     /// Example value without quotes; empty for the usual one of its kind.
     example: &'static str,
 }
 
 impl Key {
     pub(crate) const fn new(path: &'static str, kind: Kind, need: Need, doc: &'static str) -> Key {
-        Key { path, kind, need, group: "", doc, hint: "", example: "" }
+        Key { path, kind, need, group: "", doc, hint: "", only: None, example: "" }
     }
 
     pub(crate) const fn group(mut self, group: &'static str) -> Key {
@@ -136,6 +141,15 @@ impl Key {
 
     pub(crate) const fn hint(mut self, hint: &'static str) -> Key {
         self.hint = hint;
+        self
+    }
+
+    pub(crate) const fn only(
+        mut self,
+        choice: &'static str,
+        words: &'static [&'static str],
+    ) -> Key {
+        self.only = Some((choice, words));
         self
     }
 
@@ -207,33 +221,8 @@ impl Key {
 }
 
 fn usual(dimension: Dimension, range: Range) -> &'static str {
-    match dimension {
-        Length if range.unit == "um" => "5 um",
-        Length => "6 mm",
-        Mass => "0.1 kg",
-        Force => "250 N",
-        Moment => "2.5 N m",
-        Angle => "0.15 deg",
-        RotationSpeed => "1000 rpm",
-        Stress => "210 GPa",
-        Density => "7850 kg/m^3",
-        Acceleration => "-9.80665 m/s^2",
-        Time => "0.1 s",
-        Frequency => "50 Hz",
-        Speed => "0.01 m/s",
-        InverseSpeed => "0.1 s/m",
-        Stiffness => "1e8 N/m",
-        StiffnessPerArea => "2.5e14 N/m^3",
-        HertzStiffness => "1e10 N/m^1.5",
-        TiltStiffness => "1e4 N m/rad",
-        Damping => "1000 N s/m",
-        TiltDamping => "1 N m s/rad",
-        Inertia => "1e-4 kg m^2",
-        Unbalance => "9.12e-3 kg m",
-        Rate => "77 1/s",
-        Capacitance => "100 pF",
-        Resistance => "0.3 ohm",
-    }
+    let small = dimension == Dimension::Length && range.unit == "um";
+    if small { "5 um" } else { dimension.usual() }
 }
 
 pub(crate) const fn open(low: f64, high: f64, unit: &'static str) -> Range {
@@ -340,6 +329,11 @@ pub const NAMED: [&str; 8] =
 
 /// Tables of [`NAMED`] with names of their own; all others use the names of bearings.
 pub const OWN_NAMES: [&str; 3] = ["body", "spring", "sensor"];
+
+/// The table whose names a table of [`NAMED`] uses.
+pub(crate) fn kind_of_names(table: &'static str) -> &'static str {
+    if OWN_NAMES.contains(&table) { table } else { "bearing" }
+}
 
 /// Key that a dotted path refers to.
 #[derive(Clone, Copy, Debug)]

@@ -73,9 +73,7 @@ pub fn reference_markdown() -> String {
 
 fn generators_markdown(text: &mut String) {
     text.push_str(GENERATORS_INTRODUCTION);
-    text.push_str(
-        "| `generate` | keys of `[solid.mesh]`; those in brackets are optional |\n|---|---|\n",
-    );
+    text.push_str("| `generate` | keys of `[solid.mesh]` |\n|---|---|\n");
     for (name, keys) in generators() {
         let _ = writeln!(text, "| `{name}` | {keys} |");
     }
@@ -242,7 +240,8 @@ of the run, up to 10000 s. Durations are positive, and times of a table increase
 const DIMENSIONS_INTRODUCTION: &str = "\
 ## Units
 The space between number and unit is optional. Numbers have a decimal point and an optional exponent (`1.5e3 N`). For units
-that are powers of ten of the SI unit, the value is the double nearest to the decimal number.
+that are powers of ten of the SI unit, the value is the double nearest to the decimal number. With `units = \"SI\"` at the top
+of a file, a number without a unit is in SI: the unit of the table with the value 1.
 
 ";
 
@@ -281,8 +280,7 @@ unbalance along the inner race's own Y, with the speed at t = 0. (Their mean ove
 with an impact.) If the inner race's speed is prescribed and not zero at t = 0, all parts start with the velocity at which their
 equilibrium moves: balls roll without slip on the pitch circle, and traction, if any, keeps them in their orbit.
 
-**Traction.** `constant`: `coefficient`, `regularisation_speed`. `slide-to-roll`: `b`, `c` (plain numbers), `d`, `entrainment_floor`.
-`slip-speed`: `b`, `c` (s/m), `d`. Both curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.
+**Traction.** `b` and `c` are plain numbers with `slide-to-roll`, in s/m with `slip-speed`. Both curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.
 
 ## A flexible solid
 A scene with `[solid]` instead of `[bearing]` is input of `check`, `plan`, `statics`, `modes` and `run`; its results are described

@@ -43,9 +43,13 @@ fn quantity_schema(dimension: Dimension) -> Value {
         .flat_map(|unit| unit.spellings)
         .map(|spelling| spelling.replace('*', r"\*").replace('^', r"\^"))
         .collect();
+    let (name, si) = (dimension.name(), dimension.si_unit());
     json!({
-        "type": "string",
-        "description": format!("{} with its unit: {}", dimension.name(), dimension.unit_list()),
+        "type": ["string", "number"],
+        "description": format!(
+            "{name} with its unit: {}; with `units = \"SI\"` also a number in {si}",
+            dimension.unit_list()
+        ),
         "pattern": format!(r"^\s*{NUMBER_PATTERN}\s*({})\s*$", spellings.join("|")),
     })
 }

@@ -2,13 +2,12 @@
 //!
 //! Offsets count through both texts, the scene's own first, so that every error has its file and line.
 
-use crate::scene::error::{Problem, SceneError};
+use crate::scene::error::{Place, Problem, SceneError};
 use crate::scene::tables::keys;
-use crate::scene::tables::keys::KEYS;
-use crate::scene::text::document::{Document, Given, Layer};
-use crate::scene::text::items::Item;
+use crate::scene::text::document::{Document, Named};
 use crate::scene::text::source;
 use crate::scene::text::source::Source;
+use crate::scene::text::table::{Item, Table};
 use crate::scene::text::value::Checked;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -26,19 +25,25 @@ impl Document {
         let Some(Checked::Text(name)) = self.value(BASE) else {
             return match self.is_given(WITHOUT) {
                 true => {
-                    Err(self.refused(WITHOUT, "there is no base", "leave it out, or name a base"))
+                    Err(self
+                        .refused(WITHOUT, "there is no base. Hint: leave it out, or name a base"))
                 }
                 false => Ok(self),
             };
         };
         if above == DEEPEST {
-            let reason = format!("this is base number {}; at most {DEEPEST} are read", above + 1);
-            return Err(self.refused(BASE, reason, "is the chain of bases circular?"));
+            let reason = format!(
+                "this is base number {}; at most {DEEPEST} are read. Hint: is the chain of bases circular?",
+                above + 1
+            );
+            return Err(self.refused(BASE, reason));
         }
         let path = self.folder().join(name);
         let unread = |error: SceneError| {
-            let reason = format!("{} cannot be read: {}", path.display(), error.problem);
-            self.refused(BASE, reason, "a relative path starts at the scene's folder")
+            let (path, problem) = (path.display(), error.problem);
+            let hint = "a relative path starts at the scene's folder";
+            let reason = format!("{path} cannot be read: {problem}. Hint: {hint}");
+            self.refused(BASE, reason)
         };
         let (mut source, format) = source::read(&path).map_err(unread)?;
         source.is_fixed = Path::new(name).is_absolute();
@@ -46,9 +51,11 @@ impl Document {
         if let Some(Checked::Text(paths)) = self.value(WITHOUT) {
             for path in paths.split(',').map(str::trim) {
                 if !base.remove(path) {
-                    let reason = format!("{} does not contain {path:?}", base.name());
-                    let advice = "list keys, tables or named tables of the base, with commas";
-                    return Err(self.refused(WITHOUT, reason, advice));
+                    let reason = format!(
+                        "{} does not contain {path:?}. Hint: list keys, tables or named tables of the base, with commas",
+                        base.name()
+                    );
+                    return Err(self.refused(WITHOUT, reason));
                 }
             }
         }
@@ -62,7 +69,15 @@ impl Document {
     /// Path of the file named by a key's value, relative to the file that contains the key; and the same relative to the scene's
     /// folder, for messages, unless it is absolute.
     pub(crate) fn file(&self, key: &str, name: &str) -> (PathBuf, String) {
-        let from = self.place_of_key(key).file;
+        self.file_at(self.place_of_key(key), name)
+    }
+
+    /// The same for the value of an entry.
+    pub(crate) fn file_from(&self, item: &Item, name: &str) -> (PathBuf, String) {
+        self.file_at(self.place_of_item(Some(item)), name)
+    }
+
+    fn file_at(&self, Place { file: from, .. }: Place, name: &str) -> (PathBuf, String) {
         let path = Path::new(&from).parent().unwrap_or(Path::new("")).join(name);
         let fixed = Path::new(name).is_absolute()
             || self.sources().any(|(source, fixed)| fixed && source.name == from);
@@ -90,26 +105,15 @@ impl Document {
         base.shift(self.source.length());
         let own = Arc::unwrap_or_clone(self.source);
         base.source = Arc::new(Source { base: Some(base.source), ..own });
-        base.layer.lay_over(&self.layer);
+        base.tree.lay_over(&self.tree, "");
         for named in self.named {
-            let same = |of: &&mut crate::scene::text::document::Named| {
-                of.table == named.table && of.name == named.name
-            };
+            let same = |of: &&mut Named| of.table == named.table && of.name == named.name;
             match base.named.iter_mut().find(same) {
-                Some(of_base) => of_base.layer.lay_over(&named.layer),
+                Some(of_base) => of_base.tree.lay_over(&named.tree, ""),
                 None => base.named.push(named),
             }
         }
-        let own_names: Vec<&String> = self.assumptions.iter().map(|of| &of.name).collect();
-        base.assumptions.retain(|of| !own_names.contains(&&of.name));
-        base.assumptions.extend(self.assumptions);
-        if self.layer.tables.iter().any(|(table, _)| *table == "sweep") {
-            base.sweep = self.sweep;
-            for (row, _) in ["sweep.of", "sweep.together"].into_iter().filter_map(keys::find) {
-                base.layer.given[row] = self.layer.given[row].clone();
-            }
-        }
-        base.refuse_without_effect(&self.layer)?;
+        base.refuse_without_effect(&self.tree)?;
         Ok(base)
     }
 
@@ -118,42 +122,35 @@ impl Document {
         if [BASE, WITHOUT].contains(&path) {
             return false;
         }
-        let (named, assumed, swept) = (self.named.len(), self.assumptions.len(), self.sweep.len());
+        let named = self.named.len();
         // A table is removed together with its named tables.
         self.named.retain(|of| of.table != path && format!("{}.{}", of.table, of.name) != path);
-        self.assumptions.retain(|of| !is_at(&format!("assumptions.{}", of.name), path));
-        self.sweep.retain(|_| path != "sweep");
-        let some =
-            (named, assumed, swept) != (self.named.len(), self.assumptions.len(), self.sweep.len());
+        let some = named != self.named.len();
         match keys::without_name(path) {
-            (path, None) => self.layer.remove(&path) || some,
+            (path, None) => self.tree.remove(&path) || some,
             (path, Some(name)) => {
                 let of_name = self.named.iter_mut().filter(|of| of.name == name);
-                // Collected, so that all are removed and not only up to the first.
-                let taken: Vec<bool> = of_name.map(|of| of.layer.remove(&path)).collect();
-                taken.contains(&true) || some
+                of_name.fold(some, |some, of| of.tree.remove(&path) || some)
             }
         }
     }
 
     /// Refuses keys without a name that every named table of the base overrides: they would have no effect.
-    fn refuse_without_effect(&self, own: &Layer) -> Result<(), SceneError> {
-        for (key, given) in KEYS.iter().zip(&own.given) {
-            let in_list = || {
-                let listed = own.items.iter().find(|item| item.table == key.table());
-                listed.map(Item::begins).or(own.emptied.contains(&key.table()).then_some(0))
-            };
-            let given = given.as_ref().and_then(|given| given.offset);
-            let Some(offset) = given.or_else(in_list) else { continue };
-            let (names, nothing) = self.outside_range(key.path);
-            if nothing {
-                let path = if given.is_some() { key.path } else { key.table() };
-                let (table, rest) = path.split_once('.').unwrap_or((path, ""));
+    fn refuse_without_effect(&self, own: &Table) -> Result<(), SceneError> {
+        let mut leaves = Vec::new();
+        own.leaves("", &mut leaves);
+        for (path, item) in leaves {
+            if let (names, true) = self.overriding(&path) {
+                let (table, rest) = path.split_once('.').unwrap_or((&path, ""));
                 let all: Vec<String> =
                     names.iter().map(|name| format!("[{table}.{name}]")).collect();
-                let reason = format!("it has no effect, because {} override it", all.join(", "));
-                let advice = format!("write {table}.{}.{rest}", names[0]);
-                return Err(self.error_at(offset, path, Problem::refused(reason, advice)));
+                let reason = format!(
+                    "it has no effect, because {} override it. Hint: write {table}.{}.{rest}",
+                    all.join(", "),
+                    names[0]
+                );
+                let problem = Problem::refused(reason);
+                return Err(self.error_at(item.offset.unwrap_or(0), &path, problem));
             }
         }
         Ok(())
@@ -161,10 +158,10 @@ impl Document {
 
     /// Shifts all offsets by the length of the text before.
     fn shift(&mut self, by: usize) {
-        self.layer.shift(by);
+        self.tree.shift(by);
         for named in &mut self.named {
             named.offset += by;
-            named.layer.shift(by);
+            named.tree.shift(by);
         }
     }
 
@@ -189,35 +186,4 @@ fn straight(path: &Path) -> PathBuf {
         }
     }
     straight
-}
-
-/// Returns whether the key or table `known` is `path` or inside it.
-fn is_at(known: &str, path: &str) -> bool {
-    known.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-}
-
-impl Layer {
-    fn remove(&mut self, path: &str) -> bool {
-        let mut some = false;
-        for (key, given) in KEYS.iter().zip(&mut self.given) {
-            some |= is_at(key.path, path) && given.take().is_some();
-        }
-        let lists = (self.items.len(), self.emptied.len());
-        self.items.retain(|item| !is_at(item.table, path));
-        self.emptied.retain(|table| !is_at(table, path));
-        self.tables.retain(|(table, _)| !is_at(table, path));
-        some || lists != (self.items.len(), self.emptied.len())
-    }
-
-    fn shift(&mut self, by: usize) {
-        self.given.iter_mut().flatten().for_each(|given| given.shift(by));
-        self.tables.iter_mut().for_each(|(_, offset)| *offset += by);
-        self.items.iter_mut().for_each(|item| item.shift(by));
-    }
-}
-
-impl Given {
-    pub(crate) fn shift(&mut self, by: usize) {
-        self.offset = self.offset.map(|offset| offset + by);
-    }
 }

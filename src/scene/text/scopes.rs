@@ -2,9 +2,9 @@
 
 use crate::scene::error::{Problem, SceneError};
 use crate::scene::tables::keys;
-use crate::scene::tables::keys::Key;
-use crate::scene::text::document::{Document, Layer, Named};
-use crate::scene::text::items::Item;
+use crate::scene::tables::keys::{Key, Leads};
+use crate::scene::text::document::{Document, Named};
+use crate::scene::text::table::{Content, Item, Table};
 use crate::scene::text::tree::{Entry, Value};
 
 /// Similarity (0 to 1) from which a name is taken for a mistyped key or table of the same level.
@@ -33,20 +33,19 @@ impl Document {
             return Err(self.error_at(offset, &format!("{table}.{name}"), problem));
         }
         if self.named.len() == MOST {
-            let reason = format!("more than {MOST} named tables");
-            let advice = "all bodies are solved in one dense matrix; split the scene";
-            let problem = Problem::refused(reason, advice);
+            let reason = format!(
+                "more than {MOST} named tables. Hint: all bodies are solved in one dense matrix; split the scene"
+            );
+            let problem = Problem::refused(reason);
             return Err(self.error_at(offset, &format!("{table}.{name}"), problem));
         }
         let Value::Table(entries) = node.value else { return Ok(()) };
-        let others = std::mem::take(&mut self.layer);
         self.scope = Some(name.clone());
-        self.layer.tables.push((table, offset));
-        self.fill(table, entries)?;
-        self.refuse_rivals()?;
+        let inner = self.table(table, &format!("{table}.{name}"), entries)?;
         self.scope = None;
-        let layer = std::mem::replace(&mut self.layer, others);
-        self.named.push(Named { table, name, offset, layer });
+        let item = Item { content: Content::Table(inner), offset: Some(offset), named: true };
+        let tree = Table(vec![(table.to_string(), item)]);
+        self.named.push(Named { table, name, offset, tree });
         Ok(())
     }
 
@@ -61,23 +60,13 @@ impl Document {
         }
     }
 
-    /// Returns whether a path is in the named table that is being read.
-    pub(crate) fn is_in_named_table(&self, path: &str) -> bool {
-        let top = path.split('.').next();
-        self.layer.tables.first().is_some_and(|(table, _)| Some(*table) == top)
-    }
-
     /// Returns whether a key is given in a named table; if it is not given, whether another key of its table is.
     pub(crate) fn is_named(&self, path: &str) -> bool {
-        let is_own = |row: usize| self.layer.given[row].as_ref().is_some_and(|given| given.named);
-        if let Some((row, _)) = keys::find(path).filter(|(row, _)| self.layer.given[*row].is_some())
-        {
-            return is_own(row);
-        }
         let table = path.rsplit_once('.').map_or(path, |(table, _)| table);
-        let in_it =
-            |known: &str| known.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'));
-        keys::KEYS.iter().enumerate().any(|(row, key)| in_it(key.path) && is_own(row))
+        match self.tree.get(path) {
+            Some(Item { content: Content::Value(_), named, .. }) => *named,
+            _ => self.tree.get(table).and_then(Item::table).is_some_and(Table::any_named),
+        }
     }
 
     /// Names of one kind of table, in the order of the file.
@@ -87,22 +76,28 @@ impl Document {
 
     /// The document for one name: tables without a name, overridden by those of this name.
     pub fn scoped(&self, name: &str) -> Document {
-        let mut scoped = self.clone();
-        scoped.scope = Some(name.to_string());
-        scoped.named.clear();
-        for named in self.named.iter().filter(|named| named.name == name) {
-            scoped.layer.lay_over(&named.layer);
-        }
-        scoped
+        let (source, tree, scope) =
+            (self.source.clone(), self.merged(name), Some(name.to_string()));
+        Document { source, tree, named: Vec::new(), scope, in_si: self.in_si }
+    }
+
+    /// Tables without a name, overridden by those of this name.
+    pub(crate) fn merged(&self, name: &str) -> Table {
+        let mut tree = self.tree.clone();
+        let own = self.named.iter().filter(|named| named.name == name);
+        own.for_each(|named| tree.lay_over(&named.tree, ""));
+        tree
     }
 
     /// Refuses named tables in a scene whose bearing has no name; sensors are allowed.
     pub(crate) fn refuse_names(&self) -> Result<(), SceneError> {
         let nobody = |named: &&Named| named.table != "sensor";
         let Some(named) = self.named.iter().find(nobody) else { return Ok(()) };
-        let reason = format!("no bearing has the name {:?}", named.name);
-        let advice = format!("write [{}], or [bearing.{}] as well", named.table, named.name);
-        Err(self.error_of_name(named.table, &named.name, Problem::refused(reason, advice)))
+        let reason = format!(
+            "no bearing has the name {:?}. Hint: write [{}], or [bearing.{}] as well",
+            named.name, named.table, named.name
+        );
+        Err(self.error_of_name(named.table, &named.name, Problem::refused(reason)))
     }
 
     /// The document without named tables.
@@ -114,10 +109,38 @@ impl Document {
 
     /// Copies the value of another document's key to a key of this one.
     pub(crate) fn take_over(&mut self, from: &Document, source: &str, path: &str) {
-        let given = keys::find(source).and_then(|(row, _)| from.layer.given[row].clone());
-        if let (Some((row, key)), Some(given)) = (keys::find(path), given) {
-            self.layer.put(row, key, given);
+        if let (Some((_, key)), Some(given)) = (keys::find(path), from.tree.get(source)) {
+            self.tree.exchange(key, given.clone());
         }
+    }
+
+    /// Names whose own tables override a key without a name, and whether all do, so that the key has no effect. Empty and
+    /// false for a key with a name.
+    pub fn outside_range(&self, path: &str) -> (Vec<String>, bool) {
+        match keys::find_named(path) {
+            Some(Leads { key, name: None, .. }) if key.in_list() => self.overriding(key.table()),
+            Some(Leads { key, name: None, .. }) => self.overriding(key.path),
+            _ => (Vec::new(), false),
+        }
+    }
+
+    /// The same for a key or list.
+    pub(crate) fn overriding(&self, path: &str) -> (Vec<String>, bool) {
+        let Some(table) =
+            keys::NAMED.into_iter().find(|table| Some(*table) == path.split('.').next())
+        else {
+            return (Vec::new(), false);
+        };
+        let rivals = keys::find(path).into_iter().flat_map(|(_, key)| key.rivals());
+        let paths: Vec<&str> = rivals.map(|rival| rival.path).chain([path]).collect();
+        let overrides = |named: &&Named| {
+            named.table == table && paths.iter().any(|path| named.tree.get(path).is_some())
+        };
+        let own: Vec<String> =
+            self.named.iter().filter(overrides).map(|n| n.name.clone()).collect();
+        let mut names = self.names(keys::kind_of_names(table)).chain(self.names(table)).peekable();
+        let nothing = names.peek().is_some() && names.all(|name| own.iter().any(|own| own == name));
+        (own, nothing)
     }
 
     /// Problem with the name in a path to this key; `None` if it is known. Tables that describe parts of a bearing use the
@@ -128,17 +151,25 @@ impl Document {
         known().all(|known| known != name).then(|| no_such(name, kind, known()))
     }
 
-    /// Keys of the table with this name; an empty layer is added if the file has none.
-    pub(crate) fn layer_of(&mut self, key: &Key, name: &str) -> &mut Layer {
+    /// Keys of the table with this name; an empty table is added if the file has none.
+    pub(crate) fn tree_of(&mut self, key: &Key, name: &str) -> &mut Table {
         let table = table_of(key);
         let own = |named: &Named| named.table == table && named.name == name;
         let index = self.named.iter().position(own).unwrap_or_else(|| {
             let of_kind = |named: &&Named| named.table == kind_of(key) && named.name == name;
             let offset = self.named.iter().find(of_kind).map_or(0, |named| named.offset);
-            self.named.push(Named { table, name: name.into(), offset, layer: Layer::default() });
+            self.named.push(Named { table, name: name.into(), offset, tree: Table::default() });
             self.named.len() - 1
         });
-        &mut self.named[index].layer
+        &mut self.named[index].tree
+    }
+
+    /// An error of a key of a bearing with or without a name.
+    pub(crate) fn error_of(&self, name: Option<&str>, key: &str, problem: Problem) -> SceneError {
+        match name {
+            Some(name) => self.scoped(name).error(key, problem),
+            None => self.error(key, problem),
+        }
     }
 
     pub(crate) fn error_of_name(&self, table: &str, name: &str, problem: Problem) -> SceneError {
@@ -159,44 +190,22 @@ fn table_of(key: &Key) -> &'static str {
 
 /// Kind of the names of that table: bodies, springs and sensors have their own, all others those of bearings.
 fn kind_of(key: &Key) -> &'static str {
-    let table = table_of(key);
-    if keys::OWN_NAMES.contains(&table) { table } else { "bearing" }
+    keys::kind_of_names(table_of(key))
 }
 
 /// Problem of an unknown name, with the most similar known one.
 pub(crate) fn no_such<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'n str>) -> Problem {
     let known: Vec<&str> = known.collect();
     let nearest = keys::nearest(name, known.iter().copied(), 0.5);
-    let reason = match known.is_empty() {
-        true => format!("there is no {kind} {name:?}, nor any other named {kind}"),
-        false => format!("there is no {kind} {name:?}; there are: {}", known.join(", ")),
+    let others = match known.is_empty() {
+        true => format!(", nor any other named {kind}"),
+        false => format!("; there are: {}", known.join(", ")),
     };
-    let advice = match nearest {
+    let hint = match nearest {
         Some(nearest) => format!("did you mean {nearest}?"),
         None => format!("add [{kind}.{name}]"),
     };
-    Problem::refused(reason, advice)
-}
-
-impl Layer {
-    /// Merges `other` into this layer; its keys win, and its lists, also empty ones, replace whole lists.
-    pub(crate) fn lay_over(&mut self, other: &Layer) {
-        for (row, given) in other.given.iter().enumerate() {
-            if let Some(given) = given {
-                self.put(row, &keys::KEYS[row], given.clone());
-            }
-        }
-        self.tables.extend(&other.tables);
-        let replaced = |item: &Item| {
-            other.emptied.contains(&item.table)
-                || other.items.iter().any(|own| own.table == item.table)
-        };
-        self.items.retain(|item| !replaced(item));
-        self.items.extend(other.items.iter().cloned());
-        // Needed when this layer is merged into another.
-        self.emptied.retain(|table| other.items.iter().all(|item| item.table != *table));
-        self.emptied.extend(&other.emptied);
-    }
+    Problem::refused(format!("there is no {kind} {name:?}{others}. Hint: {hint}"))
 }
 
 /// Problem with a user's name, which is part of column and file names; `None` if it is valid.
@@ -213,6 +222,5 @@ pub(crate) fn unfit(name: &str) -> Option<Problem> {
     } else {
         return None;
     };
-    let advice = "choose another name, such as left";
-    Some(Problem::refused(reason, advice))
+    Some(Problem::refused(format!("{reason}. Hint: choose another name, such as left")))
 }

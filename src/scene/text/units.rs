@@ -3,33 +3,53 @@
 //! A decimal number in a power-of-ten unit becomes the double nearest to the exact SI value: the
 //! exponent is shifted in the text before it is parsed, so `"20.047 mm"` equals `20.047e-3`.
 
-/// Dimension of a key's value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    Length,
-    Mass,
-    Force,
-    Moment,
-    Angle,
-    RotationSpeed,
-    Stress,
-    Density,
-    Acceleration,
-    Time,
-    Frequency,
-    Speed,
-    InverseSpeed,
-    Stiffness,
-    StiffnessPerArea,
-    HertzStiffness,
-    TiltStiffness,
-    Damping,
-    TiltDamping,
-    Inertia,
-    Unbalance,
-    Rate,
-    Capacitance,
-    Resistance,
+/// Dimensions of quantities: name with its article, usual value, units.
+macro_rules! dimensions {
+    ($($name:ident: $phrase:literal, $usual:literal, $units:ident;)*) => {
+        /// Dimension of a key's value.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Dimension {
+            $($name,)*
+        }
+
+        impl Dimension {
+            pub const ALL: [Dimension; [$(stringify!($name)),*].len()] = [$(Dimension::$name),*];
+
+            const fn facts(self) -> (&'static str, &'static str, &'static [Unit]) {
+                match self {
+                    $(Dimension::$name => ($phrase, $usual, $units),)*
+                }
+            }
+        }
+    };
+}
+
+#[rustfmt::skip]
+dimensions! {
+    Length: "a length", "6 mm", LENGTH;
+    Mass: "a mass", "0.1 kg", MASS;
+    Force: "a force", "250 N", FORCE;
+    Moment: "a moment", "2.5 N m", MOMENT;
+    Angle: "an angle", "0.15 deg", ANGLE;
+    RotationSpeed: "a rotation speed", "1000 rpm", ROTATION_SPEED;
+    Stress: "a stress or modulus", "210 GPa", STRESS;
+    Density: "a density", "7850 kg/m^3", DENSITY;
+    Acceleration: "an acceleration", "-9.80665 m/s^2", ACCELERATION;
+    Time: "a time", "0.1 s", TIME;
+    Frequency: "a frequency", "50 Hz", FREQUENCY;
+    Speed: "a speed", "0.01 m/s", SPEED;
+    InverseSpeed: "an inverse speed", "0.1 s/m", INVERSE_SPEED;
+    Stiffness: "a stiffness", "1e8 N/m", STIFFNESS;
+    StiffnessPerArea: "a stiffness per area", "2.5e14 N/m^3", STIFFNESS_PER_AREA;
+    HertzStiffness: "a Hertz stiffness", "1e10 N/m^1.5", HERTZ_STIFFNESS;
+    TiltStiffness: "a tilting stiffness", "1e4 N m/rad", TILT_STIFFNESS;
+    Damping: "a damping coefficient", "1000 N s/m", DAMPING;
+    TiltDamping: "a tilting damping coefficient", "1 N m s/rad", TILT_DAMPING;
+    Inertia: "a moment of inertia", "1e-4 kg m^2", INERTIA;
+    Unbalance: "an unbalance", "9.12e-3 kg m", UNBALANCE;
+    Rate: "a rate", "77 1/s", RATE;
+    Capacitance: "a capacitance", "100 pF", CAPACITANCE;
+    Resistance: "a resistance", "0.3 ohm", RESISTANCE;
 }
 
 /// Conversion of a unit to SI.
@@ -166,126 +186,30 @@ const CAPACITANCE: &[Unit] = &[
 const RESISTANCE: &[Unit] = &[decimal(&["ohm", "\u{3a9}", "\u{2126}"], 0), decimal(&["mohm"], -3)];
 
 impl Dimension {
-    pub const ALL: [Dimension; 24] = [
-        Dimension::Length,
-        Dimension::Mass,
-        Dimension::Force,
-        Dimension::Moment,
-        Dimension::Angle,
-        Dimension::RotationSpeed,
-        Dimension::Stress,
-        Dimension::Density,
-        Dimension::Acceleration,
-        Dimension::Time,
-        Dimension::Frequency,
-        Dimension::Speed,
-        Dimension::InverseSpeed,
-        Dimension::Stiffness,
-        Dimension::StiffnessPerArea,
-        Dimension::HertzStiffness,
-        Dimension::TiltStiffness,
-        Dimension::Damping,
-        Dimension::TiltDamping,
-        Dimension::Inertia,
-        Dimension::Unbalance,
-        Dimension::Rate,
-        Dimension::Capacitance,
-        Dimension::Resistance,
-    ];
-
     /// Name with its article, as used in a sentence: "a length".
     pub fn name(self) -> &'static str {
-        match self {
-            Dimension::Length => "a length",
-            Dimension::Mass => "a mass",
-            Dimension::Force => "a force",
-            Dimension::Moment => "a moment",
-            Dimension::Angle => "an angle",
-            Dimension::RotationSpeed => "a rotation speed",
-            Dimension::Stress => "a stress or modulus",
-            Dimension::Density => "a density",
-            Dimension::Acceleration => "an acceleration",
-            Dimension::Time => "a time",
-            Dimension::Frequency => "a frequency",
-            Dimension::Speed => "a speed",
-            Dimension::InverseSpeed => "an inverse speed",
-            Dimension::Stiffness => "a stiffness",
-            Dimension::StiffnessPerArea => "a stiffness per area",
-            Dimension::HertzStiffness => "a Hertz stiffness",
-            Dimension::TiltStiffness => "a tilting stiffness",
-            Dimension::Damping => "a damping coefficient",
-            Dimension::TiltDamping => "a tilting damping coefficient",
-            Dimension::Inertia => "a moment of inertia",
-            Dimension::Unbalance => "an unbalance",
-            Dimension::Rate => "a rate",
-            Dimension::Capacitance => "a capacitance",
-            Dimension::Resistance => "a resistance",
-        }
+        self.facts().0
     }
 
-    /// SI unit of the resolved value.
-    pub fn si_unit(self) -> &'static str {
-        match self {
-            Dimension::Length => "m",
-            Dimension::Mass => "kg",
-            Dimension::Force => "N",
-            Dimension::Moment => "N m",
-            Dimension::Angle => "rad",
-            Dimension::RotationSpeed => "rad/s",
-            Dimension::Stress => "Pa",
-            Dimension::Density => "kg/m^3",
-            Dimension::Acceleration => "m/s^2",
-            Dimension::Time => "s",
-            Dimension::Frequency => "Hz",
-            Dimension::Speed => "m/s",
-            Dimension::InverseSpeed => "s/m",
-            Dimension::Stiffness => "N/m",
-            Dimension::StiffnessPerArea => "N/m^3",
-            Dimension::HertzStiffness => "N/m^1.5",
-            Dimension::TiltStiffness => "N m/rad",
-            Dimension::Damping => "N s/m",
-            Dimension::TiltDamping => "N m s/rad",
-            Dimension::Inertia => "kg m^2",
-            Dimension::Unbalance => "kg m",
-            Dimension::Rate => "1/s",
-            Dimension::Capacitance => "F",
-            Dimension::Resistance => "ohm",
-        }
+    /// A usual value, for examples.
+    pub fn usual(self) -> &'static str {
+        self.facts().1
     }
 
     pub fn units(self) -> &'static [Unit] {
-        match self {
-            Dimension::Length => LENGTH,
-            Dimension::Mass => MASS,
-            Dimension::Force => FORCE,
-            Dimension::Moment => MOMENT,
-            Dimension::Angle => ANGLE,
-            Dimension::RotationSpeed => ROTATION_SPEED,
-            Dimension::Stress => STRESS,
-            Dimension::Density => DENSITY,
-            Dimension::Acceleration => ACCELERATION,
-            Dimension::Time => TIME,
-            Dimension::Frequency => FREQUENCY,
-            Dimension::Speed => SPEED,
-            Dimension::InverseSpeed => INVERSE_SPEED,
-            Dimension::Stiffness => STIFFNESS,
-            Dimension::StiffnessPerArea => STIFFNESS_PER_AREA,
-            Dimension::HertzStiffness => HERTZ_STIFFNESS,
-            Dimension::TiltStiffness => TILT_STIFFNESS,
-            Dimension::Damping => DAMPING,
-            Dimension::TiltDamping => TILT_DAMPING,
-            Dimension::Inertia => INERTIA,
-            Dimension::Unbalance => UNBALANCE,
-            Dimension::Rate => RATE,
-            Dimension::Capacitance => CAPACITANCE,
-            Dimension::Resistance => RESISTANCE,
-        }
+        self.facts().2
     }
 
     /// The preferred spelling of every unit, for messages: "mm, um, nm, cm, m, km, in".
     pub fn unit_list(self) -> String {
         let names: Vec<&str> = self.units().iter().map(|unit| unit.spellings[0]).collect();
         names.join(", ")
+    }
+
+    /// SI unit of the resolved value.
+    pub fn si_unit(self) -> &'static str {
+        let si = self.units().iter().find(|unit| unit.scale.factor() == 1.0);
+        si.map_or("", |unit| unit.spellings[0])
     }
 
     /// The unit with this spelling, if the dimension has it.

@@ -4,6 +4,7 @@ use crate::numeric::profile::Profile;
 use crate::scene::error::{Problem, shortened};
 use crate::scene::resolve::profile;
 use crate::scene::tables::keys::{Key, Kind, Range, nearest};
+use crate::scene::text::sweep::SweepAxis;
 use crate::scene::text::tree::{Node, Value};
 use crate::scene::text::units::{Dimension, QuantityProblem, parse_number, parse_quantity};
 
@@ -22,6 +23,68 @@ pub enum Checked {
     /// Index of the kind in [`Kind::Either`], and the value.
     Either(usize, f64),
     Quantities(Vec<f64>),
+    /// A key varied by `[sweep]`.
+    Axis(SweepAxis),
+}
+
+impl Checked {
+    pub fn text(&self) -> Option<&str> {
+        if let Checked::Text(text) = self { Some(text) } else { None }
+    }
+
+    pub fn boolean(&self) -> Option<bool> {
+        if let Checked::Boolean(value) = self { Some(*value) } else { None }
+    }
+
+    pub fn choice(&self) -> Option<&'static str> {
+        if let Checked::Choice(word) = self { Some(word) } else { None }
+    }
+
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Checked::Number(value) => Some(*value),
+            Checked::Integer(value) => Some(*value as f64),
+            _ => None,
+        }
+    }
+
+    pub fn vector(&self) -> Option<[f64; 3]> {
+        if let Checked::Vector(value) = self { Some(*value) } else { None }
+    }
+
+    /// A quantity over time; a plain one is constant, and `true` is zero.
+    pub fn profile(&self) -> Option<Profile> {
+        match self {
+            Checked::Number(value) => Some(Profile::Constant(*value)),
+            Checked::Boolean(true) => Some(Profile::ZERO),
+            Checked::Profile(profile) => Some(profile.clone()),
+            _ => None,
+        }
+    }
+}
+
+impl From<f64> for Checked {
+    fn from(value: f64) -> Checked {
+        Checked::Number(value)
+    }
+}
+
+impl From<String> for Checked {
+    fn from(text: String) -> Checked {
+        Checked::Text(text)
+    }
+}
+
+impl From<bool> for Checked {
+    fn from(value: bool) -> Checked {
+        Checked::Boolean(value)
+    }
+}
+
+impl From<&'static str> for Checked {
+    fn from(word: &'static str) -> Checked {
+        Checked::Choice(word)
+    }
 }
 
 /// A problem and the offset of the element of a list or profile that has it.
@@ -39,7 +102,8 @@ impl From<(usize, Problem)> for ValueError {
     }
 }
 
-pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
+/// Checks a value. `in_si`: a number without a unit is a quantity in SI.
+pub fn check(key: &'static Key, node: &Node, in_si: bool) -> Result<Checked, ValueError> {
     let here = |problem| ValueError::from((node.offset, problem));
     match (key.kind, &node.value) {
         (Kind::Text, Value::Text(text)) => Ok(Checked::Text(text.clone())),
@@ -54,9 +118,12 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
         (Kind::Number(range), Value::Number(text)) => {
             number(key, text, range).map(Checked::Number).map_err(here)
         }
-        (Kind::Quantity(dimension, range), Value::Text(_) | Value::Number(_)) => {
-            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
-        }
+        (
+            Kind::Quantity(dimension, range)
+            | Kind::Profile(dimension, range)
+            | Kind::TrueOrProfile(dimension, range),
+            Value::Text(_) | Value::Number(_),
+        ) => quantity(key, &node.value, dimension, range, in_si).map(Checked::Number).map_err(here),
         (Kind::Vector(dimension, range), Value::List(items)) => {
             let wrong_length =
                 || Problem::NotThreeValues { found: items.len(), example: key.example() };
@@ -65,30 +132,24 @@ pub fn check(key: &'static Key, node: &Node) -> Result<Checked, ValueError> {
             };
             let component = |item: &Node| match &item.value {
                 Value::Text(_) | Value::Number(_) => {
-                    quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))
+                    quantity(key, &item.value, dimension, range, in_si)
+                        .map_err(|p| (item.offset, p))
                 }
                 other => Err((item.offset, wrong_kind(key, other))),
             };
             Ok(Checked::Vector([component(x)?, component(y)?, component(z)?]))
         }
-        (Kind::Profile(dimension, range), Value::Text(_) | Value::Number(_)) => {
-            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
-        }
-        (Kind::Profile(dimension, range), Value::Table(entries)) => {
-            profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
-        }
         (Kind::TrueOrProfile(..), Value::Boolean(value)) => Ok(Checked::Boolean(*value)),
-        (Kind::TrueOrProfile(dimension, range), Value::Text(_) | Value::Number(_)) => {
-            quantity(key, &node.value, dimension, range).map(Checked::Number).map_err(here)
-        }
-        (Kind::TrueOrProfile(dimension, range), Value::Table(entries)) => {
-            profile::read(key, dimension, range, entries, node.offset).map(Checked::Profile)
-        }
+        (
+            Kind::Profile(dimension, range) | Kind::TrueOrProfile(dimension, range),
+            Value::Table(entries),
+        ) => profile::read(key, (dimension, range), entries, node.offset, in_si)
+            .map(Checked::Profile),
         (Kind::Quantities(dimension, range), Value::List(items)) => {
-            quantities(key, items, node.offset, (dimension, range), true)
+            quantities(key, items, node.offset, (dimension, range), [true, in_si])
         }
         (Kind::QuantityList(dimension, range), Value::List(items)) => {
-            quantities(key, items, node.offset, (dimension, range), false)
+            quantities(key, items, node.offset, (dimension, range), [false, in_si])
         }
         (Kind::Either(kinds), Value::Text(_) | Value::Number(_)) => {
             either(key, kinds, &node.value).map_err(here)
@@ -119,7 +180,20 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
             Value::Text(text.to_string())
         }
     };
-    check(key, &Node { value, offset: 0 }).map_err(|error| error.problem)
+    check(key, &Node { value, offset: 0 }, false).map_err(|error| error.problem)
+}
+
+/// The default of the key table in a set of defaults.
+pub fn default_in(key: &'static Key, set: &str) -> Option<Checked> {
+    let (value, _) = key.need.default_in(set)?;
+    match key.kind {
+        // The default of all vectors and lists of words is `none`.
+        Kind::Vector(..) => Some(Checked::Vector([0.0; 3])),
+        Kind::Choices(words) => Some(Checked::Choices(
+            words.iter().copied().filter(|w| value.split(", ").any(|v| v == *w)).collect(),
+        )),
+        _ => check_bare(key, value).ok(),
+    }
 }
 
 fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, Problem> {
@@ -128,7 +202,7 @@ fn either(key: &Key, kinds: &'static [Kind], value: &Value) -> Result<Checked, P
         let taken = match (kind, value) {
             (Kind::Number(range), Value::Number(text)) => number(key, text, *range),
             (Kind::Quantity(dimension, range), Value::Text(_)) => {
-                quantity(key, value, *dimension, *range)
+                quantity(key, value, *dimension, *range, false)
             }
             _ => continue,
         };
@@ -147,11 +221,12 @@ fn quantities(
     items: &[Node],
     offset: usize,
     (dimension, range): (Dimension, Range),
-    increasing: bool,
+    [increasing, in_si]: [bool; 2],
 ) -> Result<Checked, ValueError> {
     let mut values: Vec<f64> = Vec::new();
     for item in items {
-        let value = quantity(key, &item.value, dimension, range).map_err(|p| (item.offset, p))?;
+        let value =
+            quantity(key, &item.value, dimension, range, in_si).map_err(|p| (item.offset, p))?;
         if increasing && values.last().is_some_and(|last| value <= *last) {
             let written = shown(&item.value);
             return Err((item.offset, Problem::NotIncreasing { written }).into());
@@ -298,23 +373,9 @@ fn choice_list(
 
 fn number(key: &Key, text: &str, range: Range) -> Result<f64, Problem> {
     let written = shortened(text);
-    let allowed = range.to_string();
-    let value = parse_number(text).map_err(|problem| match problem {
-        QuantityProblem::NotFinite => Problem::NotFinite { written: written.clone(), allowed },
-        QuantityProblem::DecimalComma => {
-            Problem::DecimalComma { written: written.clone(), allowed }
-        }
-        QuantityProblem::WrongDimension { .. } | QuantityProblem::UnknownUnit { .. } => {
-            Problem::UnitOnPlainNumber { written: written.clone(), allowed }
-        }
-        QuantityProblem::NoNumber | QuantityProblem::NoUnit { .. } => Problem::NotANumber {
-            written: written.clone(),
-            wanted: "a number",
-            allowed,
-            example: key.example(),
-        },
-    })?;
-    in_range(key, value, &written, range, None)
+    let value =
+        parse_number(text).map_err(|problem| refused(key, problem, &written, range, None))?;
+    in_range(key, value, written, range, None)
 }
 
 pub(crate) fn quantity(
@@ -322,53 +383,62 @@ pub(crate) fn quantity(
     value: &Value,
     dimension: Dimension,
     range: Range,
+    in_si: bool,
 ) -> Result<f64, Problem> {
-    let (Value::Text(text) | Value::Number(text)) = value else {
-        return Err(wrong_kind(key, value));
+    let (written, of) = (shown(value), Some(dimension));
+    let si = match value {
+        Value::Number(text) if in_si => parse_number(text),
+        Value::Text(text) | Value::Number(text) => {
+            parse_quantity(text, dimension).map(|quantity| quantity.si)
+        }
+        _ => return Err(wrong_kind(key, value)),
     };
-    let written = shown(value);
-    let allowed = || range.to_string();
-    match parse_quantity(text, dimension) {
-        Ok(quantity) => in_range(key, quantity.si, &written, range, Some(dimension)),
-        Err(problem) => Err(match problem {
-            QuantityProblem::NoUnit { number } => Problem::MissingUnit {
-                written,
-                number: shortened(&number),
-                dimension,
-                suggested: key.usual_unit(dimension, range),
-            },
-            QuantityProblem::NoNumber => Problem::NotANumber {
-                written,
-                wanted: "a number with a unit",
-                allowed: allowed(),
-                example: key.example(),
-            },
-            QuantityProblem::DecimalComma => Problem::DecimalComma { written, allowed: allowed() },
-            QuantityProblem::NotFinite => Problem::NotFinite { written, allowed: allowed() },
-            QuantityProblem::WrongDimension { unit, belongs_to } => {
-                Problem::WrongUnit { written, unit, belongs_to, dimension }
-            }
-            QuantityProblem::UnknownUnit { unit, nearest, .. } => Problem::UnknownUnit {
-                written,
-                unit: shortened(&unit),
-                dimension,
-                nearest: nearest.map(str::to_string),
-            },
-        }),
+    let si = si.map_err(|problem| refused(key, problem, &written, range, of))?;
+    in_range(key, si, written, range, of)
+}
+
+/// Problem of a text that is no plain number, or no quantity of a dimension.
+fn refused(
+    key: &Key,
+    problem: QuantityProblem,
+    written: &str,
+    range: Range,
+    dimension: Option<Dimension>,
+) -> Problem {
+    let (written, allowed) = (written.to_string(), range.to_string());
+    match (problem, dimension) {
+        (QuantityProblem::NotFinite, _) => Problem::NotFinite { written, allowed },
+        (QuantityProblem::DecimalComma, _) => Problem::DecimalComma { written, allowed },
+        (QuantityProblem::NoUnit { number }, Some(dimension)) => {
+            let (number, suggested) = (shortened(&number), key.usual_unit(dimension, range));
+            Problem::MissingUnit { written, number, dimension, suggested }
+        }
+        (QuantityProblem::WrongDimension { unit, belongs_to }, Some(dimension)) => {
+            Problem::WrongUnit { written, unit, belongs_to, dimension }
+        }
+        (QuantityProblem::UnknownUnit { unit, nearest, .. }, Some(dimension)) => {
+            let (unit, nearest) = (shortened(&unit), nearest.map(str::to_string));
+            Problem::UnknownUnit { written, unit, dimension, nearest }
+        }
+        (QuantityProblem::WrongDimension { .. } | QuantityProblem::UnknownUnit { .. }, None) => {
+            Problem::UnitOnPlainNumber { written, allowed }
+        }
+        (QuantityProblem::NoNumber | QuantityProblem::NoUnit { .. }, of) => {
+            let wanted = if of.is_some() { "a number with a unit" } else { "a number" };
+            Problem::NotANumber { written, wanted, allowed, example: key.example() }
+        }
     }
 }
 
 fn in_range(
     key: &Key,
     value: f64,
-    written: &str,
+    written: String,
     range: Range,
     dimension: Option<Dimension>,
 ) -> Result<f64, Problem> {
-    if range.contains(value, dimension) {
-        Ok(value)
-    } else {
-        let written = written.to_string();
-        Err(Problem::OutOfRange { written, allowed: range.to_string(), advice: key.hint })
+    match range.contains(value, dimension) {
+        true => Ok(value),
+        false => Err(Problem::OutOfRange { written, allowed: range.to_string(), advice: key.hint }),
     }
 }
