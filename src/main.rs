@@ -7,7 +7,9 @@ mod commands;
 
 use bearing_dynamics::output::visible::visible_line;
 use clap::{Parser, Subcommand};
-use commands::{Outcome, check, compare, memory, modes, pack, plan, run, schema, statics, sweep};
+use commands::{
+    Outcome, check, compare, conform, memory, modes, pack, plan, run, schema, statics, sweep,
+};
 use std::process::ExitCode;
 
 /// Simulate rolling bearings on flexible supports, described in a text file
@@ -39,6 +41,8 @@ enum Command {
     Pack(pack::Arguments),
     /// Compare two results folders or files and report the first difference
     Compare(compare::Arguments),
+    /// Run a program on a set of case packs and compare its results
+    Conform(conform::Arguments),
     /// Print the JSON Schema of scenes, or their reference manual
     Schema(schema::Arguments),
 }
@@ -62,6 +66,7 @@ fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Conform(arguments) => conform::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
     };
     match outcome {

@@ -6,6 +6,7 @@ mod bushing_warnings;
 pub mod check;
 pub mod check_mesh;
 pub mod compare;
+pub mod conform;
 mod drift;
 pub mod earlier;
 pub mod echo;

@@ -1,20 +1,18 @@
-//! `bearing pack`: a case for checking another implementation against this one.
+//! A case pack: a scene and its expected results, for checking another program.
 //!
 //! | file | content |
 //! |---|---|
 //! | `scene.toml` or `scene.json` | the scene as written by the user |
 //! | meshes and bases | files that the scene refers to, in folders of the same names |
 //! | `resolved.json` | the scene as one file that can be read, in SI: bases merged, defaults filled in |
-//! | `summary.json`, `series.csv`, `series.npy`, `series.columns.json` | the expected results |
+//! | `summary.json`, `series.csv`, … | the expected results, without what describes the solution process |
 //! | `tolerances.json` | tolerances of the comparison |
 //! | `README.txt` | how to use the pack |
-//! | `manifest.json` | sha256 of all files, and the program version |
+//! | `manifest.json` | kind, tags, level, origin, sha256 of all files, and the program version |
 
 use crate::output::atomic::{WriteError, write_atomic};
-use crate::output::compare::tolerance::{
-    ChannelTolerance, ToleranceClass, ToleranceError, Tolerances,
-};
-use crate::output::results::{ResultsError, RunRecord, pretty};
+use crate::output::compare::tolerance::{ToleranceError, Tolerances};
+use crate::output::results::pretty;
 use crate::scene::text::input_file;
 use crate::scene::text::input_file::{InputError, LARGEST_DATA, LARGEST_JSON};
 use serde::{Deserialize, Serialize};
@@ -28,11 +26,26 @@ pub const MANIFEST: &str = "manifest.json";
 /// Only packs have this file: a folder with it and without a manifest is an incomplete pack.
 pub const RESOLVED: &str = "resolved.json";
 
+/// What a case is about.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct About {
+    /// The command that gives its results: `statics`, `run`, `modes`; `refused` for a scene that is not valid.
+    pub kind: String,
+    /// What a program needs for it.
+    pub tags: Vec<String>,
+    /// 1: equilibria of bearings, 2: motion, 3: solids, 4: coupled; 0: not stated.
+    pub level: u8,
+    /// Where the expected numbers are from: `this program`, `closed form`, `book`, `other program`.
+    pub generated_by: String,
+}
+
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
     pub program: String,
     pub version: String,
+    pub about: About,
     /// File name → sha256 of its bytes, as 64 lower-case hexadecimal digits.
     pub sha256: BTreeMap<String, String>,
 }
@@ -44,9 +57,12 @@ pub struct PackInput<'a> {
     pub scene_text: &'a str,
     /// Files that the scene refers to: paths relative to it, and contents.
     pub files: &'a [(String, Vec<u8>)],
-    /// The scene with units and defaults; `null` for an absent part.
-    pub resolved: &'a Value,
-    pub class: ToleranceClass,
+    /// Expected `summary.json`, as a command wrote it; its `scene` becomes `resolved.json`.
+    pub summary: &'a Value,
+    /// Expected tables: names and contents.
+    pub tables: &'a [(String, Vec<u8>)],
+    pub tolerances: &'a Tolerances,
+    pub about: About,
 }
 
 #[derive(Debug, Error)]
@@ -64,8 +80,6 @@ pub enum PackError {
     )]
     Foreign { folder: PathBuf, found: String },
     #[error(transparent)]
-    Results(#[from] ResultsError),
-    #[error(transparent)]
     Tolerance(#[from] ToleranceError),
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -81,46 +95,69 @@ pub enum PackError {
     Incomplete { name: String },
 }
 
+/// Parts of a summary that describe the solution process or repeat the input: not expected of another program.
+const NOT_PACKED: [&str; 16] = [
+    "program",
+    "threads",
+    "seconds",
+    "plan",
+    "stages",
+    "solver",
+    "work",
+    "step",
+    "output",
+    "scene",
+    "assumptions",
+    "defaults",
+    "warnings",
+    "mesh",
+    "motion",
+    "complete",
+];
+
+/// The parts of a summary that a pack expects.
+pub fn expected(summary: &Value) -> Value {
+    let mut kept = summary.clone();
+    if let Some(parts) = kept.as_object_mut() {
+        parts.retain(|name, _| !NOT_PACKED.contains(&name.as_str()));
+    }
+    kept
+}
+
 /// Writes the pack and returns its manifest.
 ///
 /// # Errors
-/// A folder that holds other files, a non-finite number, a file that cannot be written.
-pub fn write_pack(
-    folder: &Path,
-    input: &PackInput,
-    run: &RunRecord,
-    results: impl FnOnce(&Path) -> Result<Vec<PathBuf>, ResultsError>,
-) -> Result<Manifest, PackError> {
+/// A folder that holds other files, a file that cannot be written.
+pub fn write_pack(folder: &Path, input: &PackInput) -> Result<Manifest, PackError> {
     if !is_plain_name(input.scene_name) || EXPECTED.contains(&input.scene_name) {
         return Err(PackError::SceneName { name: input.scene_name.to_string() });
     }
-    if let Some((name, _)) = input.files.iter().find(|(name, _)| !is_packed(name, input)) {
+    let taken = |name: &str| {
+        name == input.scene_name
+            || EXPECTED.contains(&name)
+            || input.tables.iter().any(|(table, _)| table == name)
+    };
+    if let Some((name, _)) = input.files.iter().find(|(name, _)| !is_below(name) || taken(name)) {
         return Err(PackError::Elsewhere { name: name.clone() });
     }
-    let own: Vec<&str> = input.files.iter().map(|(name, _)| name.as_str()).collect();
+    let tables = input.tables.iter();
+    let own: Vec<&str> = input.files.iter().chain(tables).map(|(name, _)| name.as_str()).collect();
     refuse_foreign_files(folder, input.scene_name, &own)?;
-    let mut tolerances = default_tolerances(input.class);
-    // A tolerance may only name channels of the summary.
-    if input.class != ToleranceClass::F64Exact
-        && run.sections.iter().any(|(name, _)| name == "warnings")
-    {
-        let ignored = ignored("warning texts differ between programs");
-        tolerances.channels.insert("warnings".into(), ignored);
-    }
-    tolerances.check()?;
+    input.tolerances.check()?;
     // The manifest is written last: a pack without one is incomplete.
-    results(folder)?;
-    let tolerances = serde_json::to_value(&tolerances).expect("tolerances are plain JSON");
+    let _ = std::fs::remove_file(folder.join(MANIFEST));
+    let tolerances = serde_json::to_value(input.tolerances).expect("tolerances are plain JSON");
     let texts = [
         (input.scene_name, input.scene_text.to_string()),
-        (RESOLVED, pretty(input.resolved)),
+        (RESOLVED, pretty(&input.summary["scene"])),
+        ("summary.json", pretty(&expected(input.summary))),
         ("tolerances.json", pretty(&tolerances)),
         ("README.txt", readme(input)),
     ];
     for (name, text) in &texts {
         write_atomic(&folder.join(name), text.as_bytes())?;
     }
-    for (name, bytes) in input.files {
+    for (name, bytes) in input.files.iter().chain(input.tables) {
         let path = folder.join(name);
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(|source| PackError::Read {
@@ -135,22 +172,15 @@ pub fn write_pack(
         sha256.insert(name.to_string(), hash(&folder.join(name))?);
     }
     let version = env!("CARGO_PKG_VERSION").to_string();
-    let manifest = Manifest { program: "bearing-dynamics".into(), version, sha256 };
+    let about = input.about.clone();
+    let manifest = Manifest { program: "bearing-dynamics".into(), version, about, sha256 };
     let text = pretty(&serde_json::to_value(&manifest).expect("a manifest is plain JSON"));
     write_atomic(&folder.join(MANIFEST), text.as_bytes())?;
     Ok(manifest)
 }
 
-/// Every file of a pack except the scene and the manifest.
-const EXPECTED: [&str; 7] = [
-    "README.txt",
-    RESOLVED,
-    "series.columns.json",
-    "series.csv",
-    "series.npy",
-    "summary.json",
-    "tolerances.json",
-];
+/// What every pack has, besides scene and manifest.
+const EXPECTED: [&str; 4] = ["README.txt", RESOLVED, "summary.json", "tolerances.json"];
 
 /// Checks every file of a pack against its manifest.
 ///
@@ -184,38 +214,12 @@ pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
     Ok(manifest)
 }
 
-/// The class for all channels except those on the solution process.
-pub fn default_tolerances(class: ToleranceClass) -> Tolerances {
-    let mut tolerances = Tolerances { class: Some(class), channels: BTreeMap::new() };
-    if class != ToleranceClass::F64Exact {
-        let reasons = [
-            ("plan", "plan texts differ between programs"),
-            ("stages", "stage counts differ between programs"),
-            ("solver", "another solver takes other steps and stops at another residual"),
-        ];
-        for (name, reason) in reasons {
-            tolerances.channels.insert(name.to_string(), ignored(reason));
-        }
-    }
-    tolerances
-}
-
-fn ignored(reason: &str) -> ChannelTolerance {
-    ChannelTolerance {
-        class: Some(ToleranceClass::Ignored),
-        reason: Some(reason.to_string()),
-        ..ChannelTolerance::default()
-    }
-}
-
 fn readme(input: &PackInput) -> String {
     format!(
-        "Case pack: a bearing, and the expected results for checking another implementation.
+        "Case pack: a scene, and the expected results for checking another program.
 
-1. Solve {scene} with your program (resolved.json is the same scene as one file in SI, with its defaults).
-2. Write summary.json and series.csv in the same format into a folder, say candidate (series.npy
-   and series.columns.json hold the same table and are optional).
-   Copy the parts of summary.json that only repeat the input (scene, assumptions).
+1. Solve {scene} ({kind}) with your program. resolved.json is the same scene as one file in SI, with its defaults.
+2. Write summary.json and the tables in the same format into a folder, say candidate.
 3. Run, from the folder that holds this one:
 
        bearing compare pack/ candidate/
@@ -223,15 +227,13 @@ fn readme(input: &PackInput) -> String {
    (with the name of this folder for pack/). Exit code 0: equal within tolerance; 1: different,
    with the first difference; 2: a file could not be read.
 
-The tolerance class is {class}; tolerances.json lists the exceptions and may be edited
-per channel. manifest.json has the sha256 of every file. Wall time, number of
-threads, versions and the program's name are not compared. If a ball has no load in both
+tolerances.json has the tolerances and their reasons. manifest.json has the sha256 of every file. If a ball has no load in both
 contacts of the reference, its position, approaches (gaps) and contact angles are not compared
 either (except in class f64-exact), because they are not determined. Angles are in degrees, all other
 quantities in SI units, as in the headers.
 ",
         scene = input.scene_name,
-        class = input.class.name(),
+        kind = input.about.kind,
     )
 }
 
@@ -246,11 +248,6 @@ fn is_below(name: &str) -> bool {
     parts.clone().count() == written.len()
         && parts.all(|part| matches!(part, Component::Normal(_)))
         && name != MANIFEST
-}
-
-/// Returns whether a file that the scene refers to can be in a pack.
-fn is_packed(name: &str, input: &PackInput) -> bool {
-    is_below(name) && name != input.scene_name && !EXPECTED.contains(&name)
 }
 
 /// Rejects a folder with files that are not part of a pack; an older pack may be replaced.

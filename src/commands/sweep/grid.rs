@@ -164,8 +164,7 @@ impl Grid {
     /// the mesh files of the scene.
     pub fn hash(&self, document: &Document, mesh: &[u8]) -> String {
         let mut hash = Sha256::new();
-        hash.update(document.text());
-        document.bases().iter().for_each(|(_, text)| hash.update(text));
+        hash.update(document.written_out(&[]).to_string());
         hash.update(mesh);
         hash.update(format!("{:?} {} {}", self.axes, self.together, env!("CARGO_PKG_VERSION")));
         hexadecimal(hash)

@@ -8,6 +8,7 @@ pub(super) mod housings;
 mod point;
 mod report;
 mod runs;
+mod shard;
 mod table;
 
 use super::earlier::{Writes, claimed};
@@ -19,6 +20,7 @@ use grid::Grid;
 use housings::Kept;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use shard::Shard;
 use std::error::Error;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -54,6 +56,12 @@ pub struct Arguments {
     /// Vary all keys together, value by value, instead of every combination
     #[arg(long)]
     together: bool,
+    /// Solve one part of the points, in a folder of its own: i/n with i from 0 [default: the task of a Slurm array]
+    #[arg(long, value_name = "I/N")]
+    shard: Option<String>,
+    /// Join the shards in the results folder to the table of the whole sweep
+    #[arg(long, conflicts_with = "shard")]
+    merge: bool,
     /// Discard an unfinished sweep in the results folder
     #[arg(long)]
     fresh: bool,
@@ -81,7 +89,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
     // A scene that cannot be solved at all is said before anything is written.
     grid.check(&document)?;
-    let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;
+    let shard = if arguments.merge { Shard::WHOLE } else { Shard::of(arguments.shard.as_deref())? };
+    let folder = claimed(&shard.folder(&sweep_folder(arguments)), Writes::Sweep)?;
     let first = grid.scene(&document, 0);
     let meshes = first.as_ref().map_or(Ok(Vec::new()), housings::mesh_files)?;
     let mesh: Vec<u8> = meshes.into_iter().flat_map(|(_, content)| content).collect();
@@ -94,12 +103,19 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let columns = point::columns(&grid, subject.as_ref());
     let block = block_size(&grid, subject.as_ref());
     let hash = grid.hash(&document, &mesh);
-    let table = Table::open(&folder, (&document, &grid, &hash), columns, arguments.fresh)?;
-    let blocks: Vec<_> = grid.blocks(block).filter(|points| !table.has_all(points)).collect();
+    let table = if arguments.merge {
+        let shards = shard::all_of(&folder, "statics", &hash)?;
+        Table::merged(&folder, &grid, columns, &shards)?
+    } else {
+        Table::open(&folder, (&document, &grid, &hash), columns, arguments.fresh)?
+    };
+    let points = shard.len(&grid, block);
+    let all = shard.blocks(&grid, block).filter(|_| !arguments.merge);
+    let blocks: Vec<_> = all.filter(|points| !table.has_all(points)).collect();
     let open: usize = blocks.iter().map(Range::len).sum();
-    let resumed = grid.len() - open;
+    let resumed = if arguments.merge { 0 } else { points - open };
 
-    let progress = progress_bar(&grid, resumed);
+    let progress = progress_bar(points, resumed);
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let header = table.columns.clone();
@@ -120,20 +136,18 @@ pub fn run(arguments: &Arguments) -> CommandResult {
 
     let table = table.into_inner().unwrap_or_else(PoisonError::into_inner);
     let (threads, seconds) = (pool.current_num_threads(), start.elapsed().as_secs_f64());
-    report::write(&folder, (&document, &grid, &hash), &table, (threads, seconds))?;
-    if table.done() < grid.len() {
+    report::write(&folder, (&document, &grid, &hash), &table, (points, threads, seconds))?;
+    if table.done() < points {
         return Err(format!(
-            "interrupted after {} of {} points, kept in {}; the same command resumes",
+            "interrupted after {} of {points} points, kept in {}; the same command resumes",
             table.done(),
-            grid.len(),
             folder.display()
         )
         .into());
     }
     let note = if resumed > 0 { format!(" ({resumed} resumed)") } else { String::new() };
     print(&format!(
-        "{} points{note} in {seconds:.2} s on {threads} thread{}: {}\n",
-        grid.len(),
+        "{points} points{note} in {seconds:.2} s on {threads} thread{}: {}\n",
         if threads == 1 { "" } else { "s" },
         folder.join("sweep.csv").display()
     ))?;
@@ -144,16 +158,15 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         let (name, title, points) = (warned.entry.name, warned.entry.title, warned.points);
         print(&format!(
             "warning[{name}]: {title} ({points} of {} points, the first is point {})\n",
-            grid.len(),
+            table.done(),
             warned.point
         ))?;
     }
     match table.failures.iter().next() {
         None => Ok(Outcome::Done),
         Some((point, message)) => Err(format!(
-            "{} of {} points have no solution (listed in {}), the first is point {point}: {message}",
+            "{} of {points} points have no solution (listed in {}), the first is point {point}: {message}",
             table.failures.len(),
-            grid.len(),
             folder.join("sweep.json").display()
         )
         .into()),
@@ -172,9 +185,9 @@ fn sweep_folder(arguments: &Arguments) -> PathBuf {
     results_folder(&arguments.scene, "sweep", &arguments.out)
 }
 
-fn progress_bar(grid: &Grid, resumed: usize) -> ProgressBar {
+fn progress_bar(points: usize, resumed: usize) -> ProgressBar {
     // Hidden by itself when standard error is not a terminal.
-    let bar = ProgressBar::new(grid.len() as u64);
+    let bar = ProgressBar::new(points as u64);
     if let Ok(style) =
         ProgressStyle::with_template("{bar:40} {pos}/{len} points, {per_sec}, {eta} left")
     {

@@ -122,12 +122,12 @@ pub fn write_record(folder: &Path, record: &Value) -> Result<(), WriteError> {
     write_atomic(&folder.join("sweep.json"), pretty(record).as_bytes())
 }
 
-/// Writes the table in the order of its points, and the record last.
+/// Writes the table in the order of its points, and the record last; with so many `points` it is complete.
 pub fn write(
     folder: &Path,
     (document, grid, hash): (&Document, &Grid, &str),
     table: &Table,
-    (threads, seconds): (usize, f64),
+    (points, threads, seconds): (usize, usize, f64),
 ) -> Result<(), Box<dyn Error>> {
     let series = table.series()?;
     series.write_csv(&folder.join("sweep.csv"))?;
@@ -139,7 +139,7 @@ pub fn write(
     });
     let mut record = started(document, grid, ("statics", hash));
     record["solved"] = json!(table.rows.len());
-    record["complete"] = json!(table.done() == grid.len());
+    record["complete"] = json!(table.done() == points);
     record["failures"] = failures(grid, &table.failures);
     record["warnings"] = warnings.collect();
     record["threads"] = json!(threads);

@@ -5,6 +5,7 @@
 
 use super::grid::Grid;
 use super::housings::{mesh_files, solid_mesh_files};
+use super::shard::{self, Shard};
 use super::{Arguments, point, progress_bar, report, sweep_folder, table};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::run::{End, check_end, run_silently};
@@ -38,7 +39,8 @@ pub fn run(
         Ok(subject)
     };
     grid.check_any(|point| subject(point).map(|_| ()))?;
-    let folder = claimed(&sweep_folder(arguments), Writes::Sweep)?;
+    let shard = if arguments.merge { Shard::WHOLE } else { Shard::of(arguments.shard.as_deref())? };
+    let folder = claimed(&shard.folder(&sweep_folder(arguments)), Writes::Sweep)?;
     let meshes = match subject(0) {
         Ok(Subject::Assembly(scene)) => mesh_files(&scene)?,
         Ok(Subject::Solid(scene)) => solid_mesh_files(std::iter::once(&*scene))?,
@@ -47,17 +49,21 @@ pub fn run(
     let mesh: Vec<u8> = meshes.into_iter().flat_map(|(_, content)| content).collect();
     let hash = grid.hash(document, &mesh);
     let of = ("runs", hash.as_str());
+    if arguments.merge {
+        return merge(&folder, document, grid, of);
+    }
     if table::earlier(&folder, of, arguments.fresh)?.is_none() && remove_points(&folder)? {
         print(&format!("the earlier results in {} are replaced\n", folder.display()))?;
     }
     report::write_record(&folder, &report::started(document, grid, of))?;
 
-    let progress = progress_bar(grid, 0);
+    let own: Vec<usize> = shard.blocks(grid, 1).map(|block| block.start).collect();
+    let progress = progress_bar(own.len(), 0);
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let ran: BTreeMap<usize, Ran> = pool.install(|| {
         // One after the other, as threads become free.
-        let points = (0..grid.len()).into_par_iter().with_max_len(1);
+        let points = own.par_iter().copied().with_max_len(1);
         let ran = points.filter_map(|point| {
             let ran = run_point(document, grid, (point, &folder), interrupted);
             progress.inc(1);
@@ -67,26 +73,17 @@ pub fn run(
     });
     progress.finish_and_clear();
 
-    let mut failures = BTreeMap::new();
-    let mut runs: Vec<ensemble::Run> = Vec::new();
-    for (point, ran) in ran {
-        match ran.and_then(|channels| alike(channels, runs.first())) {
-            Ok(channels) => {
-                runs.push(ensemble::Run { start: point::start_of_row(grid, point), channels });
-            }
-            Err(message) => drop(failures.insert(point, message)),
-        }
-    }
+    let (runs, failures) = sorted(ran, grid);
     let done = runs.len() + failures.len();
     ensemble::write(&folder, &point::start_of_columns(grid), &runs)?;
     let mut record = report::started(document, grid, of);
-    record["complete"] = json!(done == grid.len());
+    record["complete"] = json!(done == own.len());
     record["failures"] = report::failures(grid, &failures);
     report::write_record(&folder, &record)?;
-    if done < grid.len() {
+    if done < own.len() {
         return Err(format!(
             "interrupted after {done} of {} points, kept in {}; the same command resumes",
-            grid.len(),
+            own.len(),
             folder.display()
         )
         .into());
@@ -103,11 +100,53 @@ pub fn run(
         Some((point, message)) => Err(format!(
             "{} of {} runs failed (listed in {}), the first is point {point}: {message}",
             failures.len(),
-            grid.len(),
+            own.len(),
             folder.join("sweep.json").display()
         )
         .into()),
     }
+}
+
+/// Runs in the order of their points, and messages of those that failed or have other channels.
+fn sorted(ran: BTreeMap<usize, Ran>, grid: &Grid) -> (Vec<ensemble::Run>, BTreeMap<usize, String>) {
+    let mut failures = BTreeMap::new();
+    let mut runs: Vec<ensemble::Run> = Vec::new();
+    for (point, ran) in ran {
+        match ran.and_then(|channels| alike(channels, runs.first())) {
+            Ok(channels) => {
+                runs.push(ensemble::Run { start: point::start_of_row(grid, point), channels });
+            }
+            Err(message) => drop(failures.insert(point, message)),
+        }
+    }
+    (runs, failures)
+}
+
+/// The table of the runs of all shards.
+fn merge(folder: &Path, document: &Document, grid: &Grid, of: (&str, &str)) -> CommandResult {
+    let mut ran: BTreeMap<usize, Ran> = BTreeMap::new();
+    let mut points = Vec::new();
+    for shard in shard::all_of(folder, of.0, of.1)? {
+        let missed = shard::failures(&shard)?;
+        for entry in std::fs::read_dir(&shard)? {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let Some(Ok(point)) = name.strip_prefix("point-").map(str::parse) else { continue };
+            points.push(point);
+            let channels = || ensemble::channels(&json::read(&path.join("summary.json")).ok()?);
+            let own = match missed.get(&point) {
+                Some(message) => Err(message.clone()),
+                None => Ok(channels().ok_or_else(|| format!("{}: no statistics", path.display()))?),
+            };
+            ran.insert(point, own);
+        }
+    }
+    shard::check_points(&points, grid)?;
+    let (runs, failures) = sorted(ran, grid);
+    ensemble::write(folder, &point::start_of_columns(grid), &runs)?;
+    report::write_record(folder, &shard::record(document, grid, of, &failures))?;
+    print(&format!("{} runs merged: {}\n", runs.len(), folder.join("series.csv").display()))?;
+    Ok(Outcome::Done)
 }
 
 fn point_folder(folder: &Path, point: usize) -> PathBuf {

@@ -52,6 +52,32 @@ impl Table {
         Ok(Table { columns, rows, failures: BTreeMap::new(), path, file })
     }
 
+    /// The table of all shards of a sweep, in `folder`.
+    ///
+    /// # Errors
+    /// A shard that cannot be read, a point that is in no shard or in two.
+    pub fn merged(
+        folder: &Path,
+        grid: &Grid,
+        columns: Vec<Column>,
+        shards: &[PathBuf],
+    ) -> Result<Table, Box<dyn Error>> {
+        let (mut rows, mut failures) = (BTreeMap::new(), BTreeMap::new());
+        let mut points = Vec::new();
+        for shard in shards {
+            let own = kept_rows(&shard.join("sweep.csv"), &columns, grid.len())?;
+            let missed = super::shard::failures(shard)?;
+            points.extend(own.keys().chain(missed.keys()));
+            rows.extend(own);
+            failures.extend(missed);
+        }
+        super::shard::check_points(&points, grid)?;
+        let path = folder.join("sweep.csv");
+        let file = OpenOptions::new().append(true).create(true).open(&path);
+        let file = file.map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+        Ok(Table { columns, rows, failures, path, file })
+    }
+
     /// Number of points solved or found to have no solution.
     pub fn done(&self) -> usize {
         self.rows.len() + self.failures.len()

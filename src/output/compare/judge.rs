@@ -49,6 +49,7 @@ pub struct Judge<'a> {
     differing: usize,
     channels: Vec<ChannelResult>,
     ignored: Vec<String>,
+    unclaimed: BTreeSet<String>,
     pub(super) only_in_candidate: Vec<String>,
 }
 
@@ -65,6 +66,7 @@ impl<'a> Judge<'a> {
             differing: 0,
             channels: Vec::new(),
             ignored: Vec::new(),
+            unclaimed: BTreeSet::new(),
             only_in_candidate: Vec::new(),
         }
     }
@@ -92,6 +94,7 @@ impl<'a> Judge<'a> {
             first_divergence: self.first,
             channels: self.channels,
             ignored: self.ignored,
+            unclaimed: self.unclaimed.into_iter().collect(),
             only_in_candidate: self.only_in_candidate,
         })
     }
@@ -156,6 +159,22 @@ impl<'a> Judge<'a> {
             worst: None,
         });
         tolerance
+    }
+
+    /// Tags of which the present file of the candidate has no channel.
+    fn absent_tags<'n>(&self, names: impl Iterator<Item = &'n str>) -> BTreeSet<&'a str> {
+        let mut absent: BTreeSet<&str> = self.tolerances.tags.keys().map(String::as_str).collect();
+        for tag in names.filter_map(|name| self.tolerances.tag(name)) {
+            absent.remove(tag);
+        }
+        absent
+    }
+
+    /// Notes a missing channel as not claimed if all of its tag are missing.
+    fn is_unclaimed(&mut self, channel: &str, absent: &BTreeSet<&str>) -> bool {
+        let tag = self.tolerances.tag(channel).filter(|tag| absent.contains(tag));
+        self.unclaimed.extend(tag.map(str::to_string));
+        tag.is_some()
     }
 
     pub fn diverge(
@@ -226,6 +245,8 @@ impl<'a> Judge<'a> {
             *scale = values.iter().fold(*scale, larger_finite);
         }
         let label = |row: usize| row_label(reference, row);
+        let compared = self.tolerances.rows.map_or(rows, |first| rows.min(first));
+        let absent = self.absent_tags(candidate.columns().iter().map(|c| c.name.as_str()));
         let unloaded = unloaded::unloaded_rows(reference);
         let mut left_out = false;
         for (position, column) in reference.columns().iter().enumerate() {
@@ -235,6 +256,9 @@ impl<'a> Judge<'a> {
             };
             let index = self.channels.len() - 1;
             let found = candidate.columns().iter().position(|other| other.name == name);
+            if found.is_none() && self.is_unclaimed(name, &absent) {
+                continue;
+            }
             let kind = match found.map(|found| &candidate.columns()[found].unit) {
                 None => Some(DivergenceKind::MissingChannel),
                 Some(other) if other != unit => {
@@ -250,7 +274,7 @@ impl<'a> Judge<'a> {
             let scale = scales[&(vector_stem(name), unit)];
             let values = candidate.column(name).expect("the column was found above");
             for (row, (&expected, &value)) in
-                reference.data().column(position).iter().zip(values).enumerate()
+                reference.data().column(position).iter().zip(values).take(compared).enumerate()
             {
                 let order = (row + 1, position);
                 let is_idle = unloaded.as_ref().is_some_and(|rows| rows[row]);
@@ -260,7 +284,8 @@ impl<'a> Judge<'a> {
                 }
                 self.real(index, order, &|| label(row), expected, value, (tolerance, scale));
             }
-            if rows != found_rows {
+            let is_cut = self.tolerances.rows.is_some() && found_rows >= compared;
+            if rows != found_rows && !is_cut {
                 let shorter = rows.min(found_rows);
                 let kind = DivergenceKind::Length { reference: rows, candidate: found_rows };
                 self.channels[index].differing += 1;
@@ -289,6 +314,7 @@ impl<'a> Judge<'a> {
             }
         }
         let places = unloaded::unloaded_places(reference);
+        let absent = self.absent_tags(candidate.iter().map(|leaf| leaf.channel.as_str()));
         let mut left_out = false;
         // Channel → its number in `self.channels` and its tolerance, `None` if it is not compared.
         let mut opened: BTreeMap<&str, Option<(usize, Tolerance)>> = BTreeMap::new();
@@ -308,6 +334,9 @@ impl<'a> Judge<'a> {
                     self.leave_out(&format!(
                         "{channel}, default of a key that the candidate's scene sets"
                     ));
+                    continue;
+                }
+                if self.is_unclaimed(channel, &absent) {
                     continue;
                 }
                 self.channels[index].differing += 1;

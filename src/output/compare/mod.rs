@@ -117,6 +117,8 @@ pub struct Comparison {
     pub channels: Vec<ChannelResult>,
     /// `file: channel` of the values not compared, by name or by class.
     pub ignored: Vec<String>,
+    /// Tags of the tolerances of which a file of the candidate has no channel.
+    pub unclaimed: Vec<String>,
     /// `file: channel` of the channels that only the candidate has.
     pub only_in_candidate: Vec<String>,
 }

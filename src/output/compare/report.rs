@@ -17,6 +17,7 @@ pub fn report(comparison: &Comparison) -> String {
         Some(first) => different(&mut text, comparison, first),
     }
     list(&mut text, "not compared", &comparison.ignored);
+    list(&mut text, "not claimed", &comparison.unclaimed);
     list(&mut text, "only in the candidate", &comparison.only_in_candidate);
     text
 }
@@ -115,6 +116,7 @@ pub fn to_json(comparison: &Comparison) -> Value {
         "first_divergence": comparison.first_divergence.as_ref().map(divergence_json),
         "channels": channels,
         "ignored": comparison.ignored,
+        "unclaimed": comparison.unclaimed,
         "only_in_candidate": comparison.only_in_candidate,
     })
 }

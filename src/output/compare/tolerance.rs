@@ -197,6 +197,12 @@ pub struct Tolerances {
     pub class: Option<ToleranceClass>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub channels: BTreeMap<String, ChannelTolerance>,
+    /// Channels that a program may leave out, all of a tag or none: names as above, or `*` and the end of a name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tags: BTreeMap<String, Vec<String>>,
+    /// Only these first rows of tables are compared: later ones depend on the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<usize>,
 }
 
 /// A class, or numbers, or a class with some of its numbers replaced.
@@ -276,13 +282,19 @@ impl Tolerances {
     pub fn entry(&self, channel: &str) -> Option<(&str, &ChannelTolerance)> {
         self.channels
             .iter()
-            .filter(|(name, _)| {
-                channel.strip_prefix(name.as_str()).is_some_and(|rest| {
-                    rest.is_empty() || rest.starts_with('.') || rest.starts_with('[')
-                })
-            })
+            .filter(|(name, _)| is_or_holds(name, channel))
             .max_by_key(|(name, _)| name.len())
             .map(|(name, entry)| (name.as_str(), entry))
+    }
+
+    /// The tag of a channel.
+    pub fn tag(&self, channel: &str) -> Option<&str> {
+        let fits = |name: &String| match name.strip_prefix('*') {
+            Some(end) => channel.ends_with(end),
+            None => is_or_holds(name, channel),
+        };
+        let mut tags = self.tags.iter();
+        tags.find(|(_, names)| names.iter().any(fits)).map(|(tag, _)| tag.as_str())
     }
 
     /// Class name and tolerance of a channel; the tolerance is `None` if the channel is not compared.
@@ -306,4 +318,10 @@ impl Tolerances {
         });
         (class, tolerance)
     }
+}
+
+/// Returns whether a name is that of the channel or of a part above it.
+fn is_or_holds(name: &str, channel: &str) -> bool {
+    let rest = channel.strip_prefix(name);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }

@@ -1,0 +1,200 @@
+//! Tolerances of a pack: of rounding for equilibria; of a run from how much it differs from runs next to it.
+
+use super::Fallible;
+use super::solved::{Kind, Solved};
+use bearing_dynamics::output::Series;
+use bearing_dynamics::output::compare::tolerance::{ChannelTolerance, ToleranceClass, Tolerances};
+use bearing_dynamics::output::compare::{Options, compare};
+use bearing_dynamics::output::pack::expected;
+use bearing_dynamics::output::results::pretty;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Class of all packs: the same equations in double precision.
+const CLASS: ToleranceClass = ToleranceClass::F64Reordered;
+
+/// Shift of the balls that shows how neighbouring runs part, rad, and the share of a channel's largest value up to
+/// which they are alike.
+const NEIGHBOUR: f64 = 1e-9;
+const ALIKE: f64 = 1e-3;
+/// Fewest rows of a trajectory that are compared.
+const FEWEST_ROWS: usize = 2;
+/// Other starts of a chaotic run, and the shift of the balls from one to the next, rad.
+const STARTS: usize = 16;
+const NEXT_START: f64 = 1e-6;
+/// Tolerance over the difference to a run of finer steps: another integrator errs as much, or a few times more.
+const OF_STEPS: f64 = 10.0;
+/// Tolerance over the largest difference to the other starts: a further start is outside the largest of 16 now and
+/// then, outside three times of it never in a million (normal distribution: 5.3 standard deviations).
+const OF_STARTS: f64 = 3.0;
+
+/// Channels that a program may leave out, by what it then does not claim.
+const TAGS: [(&str, &[&str]); 9] = [
+    ("stiffness", &["stiffness", "stiffness_to_ground"]),
+    ("life", &["rating_life"]),
+    ("hertz", &["hertz"]),
+    ("frequencies", &["frequencies", "kinematics", "spectra"]),
+    ("determinacy", &["determinacy"]),
+    ("pressure", &["*peak_pressure", "*semi_major", "*semi_minor"]),
+    ("energy", &["energy", "*energy", "*energy_residual"]),
+    ("statistics", &["window", "extremes", "friction", "final"]),
+    ("inertia", &["inertia"]),
+];
+
+pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<Tolerances> {
+    let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();
+    let mut all = Tolerances {
+        class: Some(CLASS),
+        tags: TAGS.iter().map(|(tag, of)| (tag.to_string(), names(of))).collect(),
+        ..Tolerances::default()
+    };
+    if kind != Kind::Run {
+        return Ok(all);
+    }
+    let scene = &solved.summary["scene"];
+    let mut spread = Spread::new(solved)?;
+    if let Some(finer) = finer(scene) {
+        spread.add(&Solved::again(kind, &finer, files)?)?;
+    }
+    let reason = format!("{OF_STEPS} times the difference to a run with finer steps");
+    all.channels = spread.tolerances(OF_STEPS, &reason);
+    let Some(neighbour) = shifted(scene, NEIGHBOUR) else { return Ok(all) };
+    let neighbour = Solved::again(kind, &neighbour, files)?;
+    let table = |of: &Solved| Series::read_csv(&of.results().join("series.csv"));
+    let (series, other) = (table(solved)?, table(&neighbour)?);
+    let rows = rows_alike(&series, &other);
+    if rows == series.data().nrows() {
+        return Ok(all);
+    }
+    all.rows = Some(rows.max(FEWEST_ROWS));
+    for start in 1..=STARTS {
+        let other = shifted(scene, start as f64 * NEXT_START).unwrap_or_default();
+        spread.add(&Solved::again(kind, &other, files)?)?;
+    }
+    let of_starts = format!("{OF_STARTS} times the largest difference to {STARTS} other starts");
+    for (channel, tolerance) in spread.tolerances(OF_STARTS, &of_starts) {
+        // Of the trajectory the first rows are compared, as closely as the steps allow.
+        if series.column(&channel).is_none() {
+            all.channels.insert(channel, tolerance);
+        }
+    }
+    Ok(all)
+}
+
+/// The scene with half the step, or a tenth of the accuracy; `None` without steps.
+fn finer(scene: &Value) -> Option<Value> {
+    const STEPS: [(&str, f64); 5] = [
+        ("/numerics/step", 0.5),
+        ("/numerics/step_fraction", 0.5),
+        ("/numerics/accuracy", 0.1),
+        ("/housing/step_fraction", 0.5),
+        ("/solid/step_fraction", 0.5),
+    ];
+    let mut finer = scene.clone();
+    let mut any = false;
+    for (path, factor) in STEPS {
+        if let Some(step) = finer.pointer_mut(path)
+            && let Some(value) = step.as_f64()
+        {
+            *step = (factor * value).into();
+            any = true;
+        }
+    }
+    any.then_some(finer)
+}
+
+/// The scene with the balls of all bearings shifted; `None` without bearings.
+fn shifted(scene: &Value, by: f64) -> Option<Value> {
+    fn shift(value: &mut Value, by: f64) -> bool {
+        let Some(table) = value.as_object_mut() else { return false };
+        let mut any = false;
+        if table.contains_key("balls") {
+            let phase = table.get("ball_phase").and_then(Value::as_f64).unwrap_or(0.0);
+            table.insert("ball_phase".into(), (phase + by).into());
+            any = true;
+        }
+        table.values_mut().fold(any, |any, value| shift(value, by) | any)
+    }
+    let mut other = scene.clone();
+    other.get_mut("bearing").is_some_and(|of| shift(of, by)).then_some(other)
+}
+
+/// Number of first rows in which no column differs by more than [`ALIKE`] of its largest value.
+fn rows_alike(one: &Series, other: &Series) -> usize {
+    let (one, other) = (one.data(), other.data());
+    let rows = one.nrows().min(other.nrows());
+    let scales: Vec<f64> =
+        one.columns().into_iter().map(|c| c.iter().fold(0.0, |a: f64, b| a.max(b.abs()))).collect();
+    let alike = |row: &usize| {
+        let pairs = one.row(*row).into_iter().zip(other.row(*row)).zip(&scales);
+        pairs.into_iter().all(|((a, b), scale)| (a - b).abs() <= ALIKE * scale)
+    };
+    (0..rows).take_while(alike).count()
+}
+
+/// Largest differences to other results, channel by channel.
+struct Spread {
+    reference: tempfile::TempDir,
+    /// Largest ratio of a difference to the tolerance of [`CLASS`], and the largest difference; infinite where texts
+    /// or numbers of entries differ.
+    largest: BTreeMap<String, (String, f64, f64)>,
+}
+
+impl Spread {
+    fn new(solved: &Solved) -> Fallible<Spread> {
+        let reference = tempfile::tempdir()?;
+        lay(solved, reference.path())?;
+        Ok(Spread { reference, largest: BTreeMap::new() })
+    }
+
+    fn add(&mut self, other: &Solved) -> Fallible<()> {
+        let folder = tempfile::tempdir()?;
+        lay(other, folder.path())?;
+        let options = Options { default_class: Some(CLASS), ..Options::default() };
+        for channel in compare(self.reference.path(), folder.path(), &options)?.channels {
+            let found = match &channel.worst {
+                Some(worst) => (worst.ratio, worst.difference),
+                None if channel.differing > 0 => (f64::INFINITY, f64::INFINITY),
+                None => continue,
+            };
+            let entry = self.largest.entry(channel.channel).or_insert((channel.unit, 0.0, 0.0));
+            (entry.1, entry.2) = (entry.1.max(found.0), entry.2.max(found.1));
+        }
+        Ok(())
+    }
+
+    /// Tolerances of the channels that differ by more than rounding.
+    fn tolerances(&self, factor: f64, reason: &str) -> BTreeMap<String, ChannelTolerance> {
+        let of = |(channel, (unit, ratio, difference)): (&String, &(String, f64, f64))| {
+            if factor * ratio <= 1.0 {
+                return None;
+            }
+            let mut own = ChannelTolerance::default();
+            let class = CLASS.tolerance(unit)?;
+            if difference.is_infinite() {
+                own.class = Some(ToleranceClass::Ignored);
+                own.reason = Some("it differs between runs that are next to each other".into());
+            } else if ratio.is_infinite() {
+                own.absolute_floor = Some(factor * difference);
+                own.reason = Some(reason.into());
+            } else {
+                own.absolute_floor = Some(factor * ratio * class.absolute_floor);
+                own.relative = Some(factor * ratio * class.relative);
+                own.scale_relative = Some(factor * ratio * class.scale_relative);
+                own.reason = Some(reason.into());
+            }
+            Some((channel.clone(), own))
+        };
+        self.largest.iter().filter_map(of).collect()
+    }
+}
+
+/// What a pack would have of these results.
+fn lay(solved: &Solved, folder: &Path) -> Fallible<()> {
+    std::fs::write(folder.join("summary.json"), pretty(&expected(&solved.summary)))?;
+    for (name, content) in solved.tables(Kind::Run)? {
+        std::fs::write(folder.join(name), content)?;
+    }
+    Ok(())
+}
