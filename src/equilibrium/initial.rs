@@ -14,7 +14,7 @@ use crate::equilibrium::statics::{
 };
 use crate::kinematics::Pose;
 use crate::kinematics::euler::quaternion;
-use crate::members::body::{DrivenBody, FARTHEST, is_fixed};
+use crate::members::body::{DrivenBody, FARTHEST, all_prescribed, is_fixed};
 use crate::members::connection::Connection;
 use crate::members::mount::Mount;
 use nalgebra::{SVector, Vector3};
@@ -64,7 +64,8 @@ pub(crate) fn at(
     let mut following = FollowerLoadRounds::new(assembly, &plain, t, tilts);
     let mut rounds = 0;
     loop {
-        let found = search(&following.loaded(&plain), near.as_deref(), &options)?;
+        let mut found = search(&following.loaded(&plain), near.as_deref(), &options)?;
+        impose_prescribed(assembly, t, &mut found);
         bend(&mut plain, &found);
         if following.follow(&plain, &found, options.tolerance) {
             return Ok(found);
@@ -97,6 +98,15 @@ fn search(
     solve_assembly(loaded, None, options)
 }
 
+/// Replaces prescribed coordinates by their exact values, without the rounding of a pose.
+fn impose_prescribed(assembly: &Assembly, t: f64, found: &mut Equilibrium) {
+    for (coordinates, body) in found.coordinates.iter_mut().zip(&assembly.bodies) {
+        if let Some(at) = body.driven().and_then(|race| all_prescribed(race, t)) {
+            *coordinates = at.into();
+        }
+    }
+}
+
 /// Coordinates as far as they are prescribed.
 fn given(assembly: &StaticAssembly) -> Vec<Five> {
     let of = |body: &StaticBody| match &body.place {
@@ -112,7 +122,10 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
         let rest = &body.rest;
         let place = match body.driven() {
             None => fixed_at(rest),
-            Some(race) => Place::Loaded(loaded(assembly, index, race, t)),
+            Some(race) => match all_prescribed(race, t) {
+                Some(at) => fixed_at(&at),
+                None => Place::Loaded(loaded(assembly, index, race, t)),
+            },
         };
         StaticBody { name: body.name.clone(), place }
     });
@@ -136,6 +149,16 @@ pub fn static_assembly(assembly: &Assembly, t: f64, turned: &[f64]) -> StaticAss
     };
     sections::add(assembly, t, &mut still);
     still
+}
+
+/// Gives bodies with five prescribed coordinates loads and stiffness of their own, as results of statics have them;
+/// the start of a motion needs neither.
+pub fn add_reactions(assembly: &Assembly, t: f64, still: &mut StaticAssembly) {
+    for (index, (body, of)) in still.bodies.iter_mut().zip(&assembly.bodies).enumerate() {
+        if let (Place::Fixed(_), Some(race)) = (&body.place, of.driven()) {
+            body.place = Place::Loaded(loaded(assembly, index, race, t));
+        }
+    }
 }
 
 /// A driven body, with springs and room.

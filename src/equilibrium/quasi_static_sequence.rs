@@ -6,7 +6,7 @@
 use crate::assembly::lists::Assembly;
 use crate::assembly::prescribed::{conditions, orbital_angle};
 use crate::ch2_housing::bore_contact::Penalty;
-use crate::equilibrium::initial::static_assembly;
+use crate::equilibrium::initial::{add_reactions, static_assembly};
 use crate::equilibrium::lists::{Place, StaticAssembly, StaticBody, StaticSeat};
 use crate::equilibrium::quasi_static_limit::MovingBody;
 use crate::equilibrium::statics::{AssemblySolution, StaticsError};
@@ -117,6 +117,7 @@ impl<'b> QuasiStaticProblem<'b> {
         let turned: Vec<f64> =
             bearings.map(|bearing| orbital_angle(&self.assembly, bearing, t)).collect();
         let mut still: StaticAssembly<'b> = static_assembly(&self.assembly, t, &turned);
+        add_reactions(&self.assembly, t, &mut still);
         self.seats.iter().for_each(|seat| seat.add_to(&mut still, t));
         still
     }

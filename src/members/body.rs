@@ -180,10 +180,19 @@ pub enum Condition {
 /// nothing sound by a metre.
 pub const FARTHEST: f64 = 1.0;
 
+/// Coordinates of a body if all are prescribed.
+pub(crate) fn all_prescribed(race: &DrivenBody, t: f64) -> Option<[f64; 5]> {
+    let mut at = [0.0; 5];
+    for (at, drive) in at.iter_mut().zip(&race.drives) {
+        let Drive::Motion(profile) = drive else { return None };
+        *at = profile.value(t);
+    }
+    Some(at)
+}
+
 /// Returns whether a body has no unknown.
 pub(crate) fn is_fixed(body: &Body) -> bool {
-    let given = |drive: &Drive| matches!(drive, Drive::Motion(_));
-    body.driven().is_none_or(|race| race.drives.iter().all(given))
+    body.driven().is_none_or(|race| all_prescribed(race, 0.0).is_some())
 }
 
 /// Prescribed speed of a body about its own axis at `t`, rad/s; zero for a torque drive or a fixed body.

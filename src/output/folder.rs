@@ -204,13 +204,13 @@ pub fn content(folder: &Path) -> Result<FolderContent, FolderError> {
             },
         }
     };
-    let state = record(STATE, state::head)?;
-    let (summary, sweep) = (record("summary.json", json::read)?, record("sweep.json", json::read)?);
-    // A partial pack has no manifest yet.
-    let manifest = json::read(&folder.join(MANIFEST)).is_ok_and(|manifest| is_own(&manifest));
-    if manifest || (summary.is_some() && there(RESOLVED)) {
+    // Only packs have a resolved scene; a partial one has no manifest yet.
+    if there(RESOLVED) || json::read(&folder.join(MANIFEST)).is_ok_and(|manifest| is_own(&manifest))
+    {
         return Ok(FolderContent::Pack);
     }
+    let state = record(STATE, state::head)?;
+    let (summary, sweep) = (record("summary.json", json::read)?, record("sweep.json", json::read)?);
     if sweep.is_some() {
         return Ok(FolderContent::Sweep);
     }

@@ -33,7 +33,7 @@ const FEATURES: [Feature; 16] = [
     ("sweep", "both of two points are in `sweep.csv`", sweep),
     ("sweep --of runs", "both of two points are in `series.csv`", sweep_of_runs),
     ("modes", "`series.csv` has frequencies", modes),
-    ("pack", "`compare` finds the pack equal to results of `statics`", pack),
+    ("pack", "`compare` finds the pack equal to results of its command", pack),
     ("compare", "results of two equal runs (of statics where nothing runs) are equal", compare),
     ("fields", "with `fields_interval`, `fields.pvd` lists files that exist", fields),
     ("spectrum", "`spectrum.csv` exists with `plots = [\"spectrum\"]`, and has rows", spectrum),
@@ -276,10 +276,11 @@ fn modes(place: &Place) -> Cell {
 
 fn pack(place: &Place) -> Cell {
     let said = place.done(&["pack", &place.out("scene.toml"), "--out", &place.out("pack")])?;
-    let found = place.done(&["compare", &place.out("pack"), &place.out("still")])?;
+    let kind = said.trim_end().rsplit(": ").next().unwrap_or_default();
+    let results = if kind == "run" { "whole" } else { "still" };
+    let found = place.done(&["compare", &place.out("pack"), &place.out(results)])?;
     place.yes(found.starts_with("equal: "), &found)?;
-    let limits = said.trim_end().rsplit_once(&format!("{}: ", place.out("pack")));
-    Ok(limits.map_or(String::new(), |(_, limits)| limits.to_string()))
+    Ok(format!("results of `{kind}`"))
 }
 
 fn compare(place: &Place) -> Cell {

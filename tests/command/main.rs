@@ -33,6 +33,7 @@ mod command_line_check;
 mod command_line_compare;
 mod command_line_files;
 mod command_line_sweep;
+mod conform;
 mod documented_commands;
 mod engineering;
 mod features;

@@ -6,9 +6,11 @@ use crate::output_common;
 
 use bearing_dynamics::equilibrium::statics::{Determinacy, StaticSolution};
 use bearing_dynamics::output::atomic::{WriteError, remove_partials};
-use bearing_dynamics::output::compare::tolerance::ToleranceClass;
+use bearing_dynamics::output::compare::tolerance::{ToleranceClass, Tolerances};
 use bearing_dynamics::output::compare::{Options, compare, report};
-use bearing_dynamics::output::pack::{PackError, PackInput, verify_pack, write_pack};
+use bearing_dynamics::output::pack::{
+    About, Manifest, PackError, PackInput, verify_pack, write_pack,
+};
 use bearing_dynamics::output::results::{ResultsError, static_summary, write_static_results};
 use bearing_dynamics::output::series::{Column, Series, SeriesError};
 use bearing_dynamics::output::visible::{visible, visible_line};
@@ -19,7 +21,7 @@ use output_common::{run, solution};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 fn bits(series: &Series) -> Vec<u64> {
     series.data().iter().map(|value| value.to_bits()).collect()
@@ -67,11 +69,6 @@ proptest! {
             let _ = compare(&path, &path, &Options::default());
         }
     }
-}
-
-/// The results of a pack.
-fn written(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
-    write_static_results(folder, &solution(), &run())
 }
 
 #[test]
@@ -204,27 +201,46 @@ fn a_solution_that_is_not_finite_writes_nothing() {
     assert!(!target.exists());
 }
 
-fn pack(folder: &Path, class: ToleranceClass) {
-    let resolved = json!({ "bearing": { "balls": 8 } });
+fn about() -> About {
+    let (kind, generated_by) = ("statics".into(), "this program".into());
+    About { kind, tags: vec!["tilt".into()], level: 1, generated_by }
+}
+
+fn tolerances(class: ToleranceClass) -> Tolerances {
+    Tolerances { class: Some(class), ..Tolerances::default() }
+}
+
+/// Writes a pack of the results of [`solution`] with this scene and these files.
+fn pack(
+    folder: &Path,
+    scene: [&str; 2],
+    files: &[(String, Vec<u8>)],
+    class: ToleranceClass,
+) -> Result<Manifest, PackError> {
+    let results = tempfile::tempdir().unwrap();
+    write_static_results(results.path(), &solution(), &run()).unwrap();
+    let table = fs::read(results.path().join("series.csv")).unwrap();
+    let summary = fs::read(results.path().join("summary.json")).unwrap();
     let input = PackInput {
-        scene_name: "scene.toml",
-        scene_text: "title = \"deep groove\"\n",
-        files: &[("mesh/housing.msh".into(), b"$MeshFormat".to_vec())],
-        resolved: &resolved,
-        class,
+        scene_name: scene[0],
+        scene_text: scene[1],
+        files,
+        summary: &serde_json::from_slice(&summary).unwrap(),
+        tables: &[("series.csv".into(), table)],
+        tolerances: &tolerances(class),
+        about: about(),
     };
-    write_pack(folder, &input, &run(), written).unwrap();
+    write_pack(folder, &input)
 }
 
 #[test]
 fn a_pack_accepts_its_own_results_and_notices_any_change_to_its_files() {
     let root = tempfile::tempdir().unwrap();
     let (folder, candidate) = (root.path().join("pack"), root.path().join("candidate"));
+    let scene = ["scene.toml", "title = \"deep groove\"\n"];
+    let mesh = [("mesh/housing.msh".to_string(), b"$MeshFormat".to_vec())];
     for class in [ToleranceClass::F64Exact, ToleranceClass::F64Reordered, ToleranceClass::Mixed] {
-        pack(&folder, class);
-        write_static_results(&candidate, &solution(), &run()).unwrap();
-        let result = compare(&folder, &candidate, &Options::default()).unwrap();
-        assert!(result.equal, "{}", report(&result));
+        pack(&folder, scene, &mesh, class).unwrap();
         // Another solver: other iterations, another plan.
         let (mut other, mut record) = (solution(), run());
         other.iterations += 3;
@@ -232,10 +248,10 @@ fn a_pack_accepts_its_own_results_and_notices_any_change_to_its_files() {
         record.plan = vec![Item::does(Stage::Equilibrium, Subject::Whole, why)];
         write_static_results(&candidate, &other, &record).unwrap();
         let result = compare(&folder, &candidate, &Options::default()).unwrap();
-        assert_eq!(result.equal, class != ToleranceClass::F64Exact);
+        assert!(result.equal, "{}", report(&result));
     }
     let manifest = verify_pack(&folder).unwrap();
-    assert_eq!(manifest.sha256.len(), 9);
+    assert_eq!((manifest.sha256.len(), &manifest.about), (7, &about()));
     for name in manifest.sha256.keys() {
         let path = folder.join(name);
         let bytes = fs::read(&path).unwrap();
@@ -260,14 +276,7 @@ fn the_hash_is_sha256() {
     let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
     let root = tempfile::tempdir().unwrap();
     let folder = root.path().join("pack");
-    let input = PackInput {
-        scene_name: "scene.toml",
-        scene_text: "abc",
-        files: &[],
-        resolved: &json!({}),
-        class: ToleranceClass::Mixed,
-    };
-    let manifest = write_pack(&folder, &input, &run(), written).unwrap();
+    let manifest = pack(&folder, ["scene.toml", "abc"], &[], ToleranceClass::Mixed).unwrap();
     assert_eq!(manifest.sha256["scene.toml"], expected);
 }
 
@@ -275,36 +284,21 @@ fn the_hash_is_sha256() {
 fn a_pack_does_not_mix_with_other_files() {
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("thesis.txt"), "mine").unwrap();
+    let new = root.path().join("new");
+    let class = ToleranceClass::Mixed;
     for name in ["../scene.toml", "", "summary.json", "manifest.json", "/scene.toml"] {
-        let resolved = json!({});
-        let input = PackInput {
-            scene_name: name,
-            scene_text: "",
-            files: &[],
-            resolved: &resolved,
-            class: ToleranceClass::Mixed,
-        };
-        let result = write_pack(&root.path().join("new"), &input, &run(), written);
+        let result = pack(&new, [name, ""], &[], class);
         assert!(matches!(result, Err(PackError::SceneName { .. })), "{name:?}");
-        let input = PackInput { scene_name: "scene.toml", ..input };
-        let result = write_pack(root.path(), &input, &run(), written);
+        let result = pack(root.path(), ["scene.toml", ""], &[], class);
         assert!(matches!(result, Err(PackError::Foreign { .. })));
     }
     // Meshes that are elsewhere, or would be taken for parts of the pack.
     for name in ["../a.msh", "/a.msh", "b/../a.msh", "./a.msh", "summary.json", "scene.toml"] {
         let files = [(name.to_string(), Vec::new())];
-        let resolved = json!({});
-        let input = PackInput {
-            scene_name: "scene.toml",
-            scene_text: "",
-            files: &files,
-            resolved: &resolved,
-            class: ToleranceClass::Mixed,
-        };
-        let result = write_pack(&root.path().join("new"), &input, &run(), written);
+        let result = pack(&new, ["scene.toml", ""], &files, class);
         assert!(matches!(result, Err(PackError::Elsewhere { .. })), "{name:?}");
     }
-    assert!(!root.path().join("new").exists());
+    assert!(!new.exists());
 }
 
 /// What a killed process left goes, what another one may be writing stays, and so does the rest.

@@ -41,9 +41,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let document = Document::read_file(&path)?;
     let subject = resolve_subject(&document)?;
     let kind = arguments.of.unwrap_or(match &subject {
-        Subject::Assembly(scene) if scene.bearings.is_empty() => Kind::Modes,
         Subject::Assembly(_) => Kind::Statics,
-        _ => Kind::Run,
+        Subject::Solid(_) => Kind::Run,
     });
     let about = About {
         kind: kind.name().into(),

@@ -3,7 +3,7 @@
 use crate::assembly::lists::Assembly;
 use crate::ch2_housing::bearing::frequencies;
 use crate::ch2_housing::bearing::hertz::{HertzError, RaceSide, contact};
-use crate::equilibrium::initial::static_assembly;
+use crate::equilibrium::initial::{add_reactions, static_assembly};
 use crate::equilibrium::lists::StaticAssembly;
 use crate::equilibrium::statics::StaticProblem;
 use crate::kinematics::{Pose, euler};
@@ -42,6 +42,7 @@ pub fn static_problem(scene: &Scene) -> Result<StaticProblem, HertzError> {
 /// balls unless requested.
 pub fn still_lists(scene: &AssemblyScene, assembly: &Assembly) -> StaticAssembly<'static> {
     let mut still = static_assembly(assembly, 0.0, &[]);
+    add_reactions(assembly, 0.0, &mut still);
     for (bearing, placed) in still.bearings.iter_mut().zip(&scene.bearings) {
         let speed = if placed.scene.centrifugal { orbital_speed(&placed.scene) } else { 0.0 };
         bearing.centrifugal = ball_mass(&placed.scene) * speed * speed;
