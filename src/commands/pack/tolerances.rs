@@ -1,4 +1,4 @@
-//! Tolerances of a pack: of rounding for equilibria; of a run from how much it differs from runs next to it.
+//! Tolerances of a pack: of rounding for equilibria, measured; of a run from how much it differs from runs next to it.
 
 use super::Fallible;
 use super::solved::{Kind, Solved};
@@ -9,6 +9,7 @@ use bearing_dynamics::output::pack::expected;
 use bearing_dynamics::output::results::pretty;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Class of all packs: the same equations in double precision.
@@ -23,6 +24,8 @@ const FEWEST_ROWS: usize = 2;
 /// Other starts of a chaotic run, and the shift of the balls from one to the next, rad.
 const STARTS: usize = 16;
 const NEXT_START: f64 = 1e-6;
+/// Tolerance over the difference to the same equilibrium with other rounding.
+const OF_ROUNDING: f64 = 10.0;
 /// Tolerance over the difference to a run of finer steps: another integrator errs as much, or a few times more.
 const OF_STEPS: f64 = 10.0;
 /// Tolerance over the largest difference to the other starts: a further start is outside the largest of 16 now and
@@ -49,11 +52,18 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
         tags: TAGS.iter().map(|(tag, of)| (tag.to_string(), names(of))).collect(),
         ..Tolerances::default()
     };
-    if kind != Kind::Run {
-        return Ok(all);
-    }
     let scene = &solved.summary["scene"];
     let mut spread = Spread::new(solved)?;
+    if kind != Kind::Run {
+        for turn in [TAU, -TAU] {
+            if let Some(turned) = shifted(scene, turn) {
+                spread.add(&Solved::again(kind, &turned, files)?)?;
+            }
+        }
+        let reason = format!("{OF_ROUNDING} times the difference to the balls a whole turn on");
+        all.channels = spread.tolerances(OF_ROUNDING, &reason);
+        return Ok(all);
+    }
     if let Some(finer) = finer(scene) {
         spread.add(&Solved::again(kind, &finer, files)?)?;
     }

@@ -1,0 +1,400 @@
+"""A ball bearing in equilibrium and in simple motion, from the documentation of bearing-dynamics.
+
+Usage: python candidate.py RESOLVED_JSON OUT_FOLDER. Reads the resolved scene of a case pack, writes summary.json and
+series.csv. Equation numbers are those of the dissertation; axes, signs and symbols are those of docs/theory.md.
+Exit code 3: the scene needs something that this program does not claim. Quantities are in SI units and radians.
+"""
+
+import csv
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+
+COORDINATES = ("x", "y", "z", "tilt_y", "tilt_z")
+DEGREE = np.pi / 180.0
+UNITS = {"1": 1, "m": 1, "mm": 1e-3, "um": 1e-6, "kg": 1, "g": 1e-3, "N": 1, "kN": 1e3, "N m": 1, "rad": 1, "kg m^2": 1,
+         "deg": DEGREE, "rad/s": 1, "rpm": np.pi / 30, "Hz": 2 * np.pi, "Pa": 1, "MPa": 1e6, "GPa": 1e9, "kg/m^3": 1,
+         "m/s^2": 1, "s": 1, "ms": 1e-3, "us": 1e-6, "s/m": 1}
+
+
+class Refused(Exception):
+    """The scene needs something that this program does not claim."""
+
+
+def to_si(node):
+    """The scene with every {"value", "unit"} replaced by its value in SI units."""
+    if isinstance(node, list):
+        return [to_si(item) for item in node]
+    if isinstance(node, dict) and set(node) == {"value", "unit"} and node["unit"] in UNITS:
+        return node["value"] * UNITS[node["unit"]]
+    return {key: to_si(item) for key, item in node.items()} if isinstance(node, dict) else node
+
+
+def claim(scene):
+    """Refuses what this program does not compute."""
+    bearing, inner, outer = (scene.get(key, {}) for key in ("bearing", "inner_race", "outer_race"))
+    known = {"": "title source defaults assumptions bearing inner_race outer_race ball_forces traction contact_damping "
+                 "ball_contact numerics output sweep", "inner_race.": "x y z tilt_y tilt_z speed inertia",
+             "outer_race.": "x y z tilt_y tilt_z motion"}
+    neutral = (None, False, 0.0, {}, [], "inner_race", "outer_race", "fixed")
+    refused = [prefix + key for (prefix, keys), table in zip(known.items(), (scene, inner, outer))
+               for key, item in table.items() if key not in keys.split() and item not in neutral]
+    refused += [f"bearing.{key}" for key in ("inner_on", "outer_on", "inner_at", "outer_at", "reversed")
+                if bearing.get(key) not in neutral]
+    profiles = [inner.get("speed", 0.0)] + [v for key in COORDINATES for v in inner.get(key, {}).values()]
+    profiles += [outer.get(key) for key in COORDINATES]
+    reasons = {"more than one bearing": "kind" not in bearing, "outer_race.motion": outer.get("motion") not in neutral,
+               "a profile over time": any(isinstance(item, dict) for item in profiles)}
+    if "numerics" in scene:
+        reasons |= {"traction": scene.get("traction", {}).get("law") != "none", "no inertia": "inertia" not in inner,
+                    "a moving cage": "mass" in bearing.get("cage", {}), "a deviation": "deviations" in bearing["ball"],
+                    "a profile of a raceway": any(bearing.get(key) for key in ("dent", "spall", "waviness"))}
+    for name in refused + [name for name, true in reasons.items() if true]:
+        raise Refused(name)
+
+
+def boundary(table):
+    """Prescribed coordinates, loads, and which coordinates of the inner race are free."""
+    q, load, free = np.zeros(5), np.zeros(5), np.ones(5, bool)
+    for i, key in enumerate(COORDINATES):
+        entry = table.get(key, {})
+        load[i] = entry.get("load", entry.get("moment", 0.0))
+        q[i] = entry.get("displacement", entry.get("tilt", 0.0))
+        free[i] = not entry.keys() & {"displacement", "tilt"}
+    return q, load, free
+
+
+def rotation(tilt_y, tilt_z):
+    """R_y(xi) R_z(lambda): components of the race to those of the scene, transpose of (2.16)."""
+    cy, sy, cz, sz = np.cos(tilt_y), np.sin(tilt_y), np.cos(tilt_z), np.sin(tilt_z)
+    rows = [[cy * cz, -cy * sz, sy], [sz, cz, 0.0 * cz], [-sy * cz, sy * sz, cy]]
+    return np.stack([np.stack(row, -1) for row in rows], -2)
+
+
+def cross(a, b):
+    return np.stack([a[..., i] * b[..., j] - a[..., j] * b[..., i] for i, j in ((1, 2), (2, 0), (0, 1))], -1)
+
+
+class Race:
+    """A raceway as a torus, and its Hertz contact with a ball at the nominal geometry."""
+
+    def __init__(self, table, ball, radius, cosine, sign, fit):
+        self.axial, self.radial = table["groove_centre_axial"], table["groove_centre_radius"]
+        groove = table["groove_radius"]
+        self.gap = groove - radius                                          # groove centre to ball centre
+        self.rolling = 1.0 / (1.0 / radius + sign / (self.radial / cosine - sign * groove))     # R_x
+        self.transverse = 1.0 / (1.0 / radius - 1.0 / groove)                                   # R_y
+        ratio, self.curvature = self.transverse / self.rolling, 1.0 / self.rolling + 1.0 / self.transverse
+        self.modulus = 2.0 / sum((1.0 - m["poisson_ratio"]**2) / m["youngs_modulus"]
+                                 for m in (ball["material"], table["material"]))                # E'
+        integrals = lambda k: (ellipk(1.0 - k**-2.0), ellipe(1.0 - k**-2.0))
+        if fit:                                                             # Hamrock and Brewe
+            self.ellipticity = 1.0339 * ratio**0.636
+            first, self.second = 1.5277 + 0.6023 * np.log(ratio), 1.0003 + 0.5968 / ratio
+        else:                                                               # R_y / R_x = (k^2 E - F) / (F - E)
+            misfit = lambda k, first, second: (k * k * second - first) / (first - second) - ratio
+            self.ellipticity = brentq(lambda k: misfit(k, *integrals(k)), 1.0 + 1e-6, 1e5, xtol=1e-15, rtol=1e-15)
+            first, self.second = integrals(self.ellipticity)
+        self.stiffness = np.pi * self.ellipticity * self.modulus * np.sqrt(                     # K_H
+            2.0 * self.second / (9.0 * self.curvature * first**3))
+
+    def contact(self, frame, arm):
+        """Approach, normal, elastic load (2.1) and contact angle; `arm` runs from the race's centre to the ball's.
+
+        The normal runs from groove centre to ball: it is the direction of the force on the race.
+        """
+        local = np.einsum("...ji,...j->...i", frame, arm)
+        distance = np.sqrt(local[..., 1]**2 + local[..., 2]**2)
+        axial, radial = local[..., 0] - self.axial, distance - self.radial
+        length = np.sqrt(axial**2 + radial**2)
+        normal = np.stack([axial, radial * local[..., 1] / distance, radial * local[..., 2] / distance], -1)
+        normal = np.einsum("...ij,...j->...i", frame, normal / length[..., None])
+        approach = length - self.gap
+        overlap = np.where(approach.real > 0.0, approach, 0.0)
+        angle = np.arctan2((axial * np.sign(radial.real)).real, abs(radial.real))
+        return approach, normal, self.stiffness * overlap * np.sqrt(overlap), angle
+
+    def ellipse(self, load):
+        """Semi-axes and peak pressure."""
+        cube = 6.0 * self.ellipticity**2 * self.second * load / (np.pi * self.modulus * self.curvature)
+        major, minor = np.cbrt(cube), np.cbrt(cube) / self.ellipticity
+        return major, minor, 1.5 * load / (np.pi * np.where(load > 0.0, major * minor, 1.0))
+
+
+class Bearing:
+    def __init__(self, scene):
+        table, ball, forces = scene["bearing"], scene["bearing"]["ball"], scene.get("ball_forces", {})
+        self.count, self.ball, self.pitch = table["balls"], ball["radius"], table["pitch_radius"]
+        self.mass = ball["material"]["density"] * 4.0 / 3.0 * np.pi * self.ball**3
+        self.gravity = np.array(forces.get("gravity", [0.0, 0.0, 0.0]))
+        cosine = np.cos(table["contact_angle"])
+        self.gamma = self.ball / self.pitch * cosine
+        self.inner, self.outer = (Race(table[name], ball, self.ball, cosine, sign, table["hertz"] == "hamrock-brewe")
+                                  for name, sign in (("inner_race", 1.0), ("outer_race", -1.0)))
+        self.speed = scene.get("inner_race", {}).get("speed", 0.0)
+        self.orbital = 0.5 * (1.0 - self.gamma) * self.speed                # rolling without slip, nominal angle
+        # A run always has centrifugal forces.
+        self.spin = self.mass * self.orbital**2 if "numerics" in scene or forces.get("centrifugal") else 0.0
+        place = [scene.get("outer_race", {}).get(key, 0.0) for key in COORDINATES]
+        self.centre, self.frame = np.array(place[:3]), rotation(place[3], place[4])   # of the outer race
+        self.axis = self.frame[:, 0]
+        self.turn_balls(table["ball_phase"])
+
+    def turn_balls(self, phase):
+        """Sets the azimuths of the balls, and the radial direction and that of the orbit at each."""
+        self.azimuth = phase + 2.0 * np.pi * np.arange(self.count) / self.count
+        self.radial = np.stack([np.cos(self.azimuth), np.sin(self.azimuth)], 1) @ self.frame[:, 1:].T
+        self.along = np.cross(self.axis, self.radial)
+
+    def positions(self, balls):
+        """Ball centres in the scene, from axial and radial position in the meridian planes of the outer race."""
+        return self.centre + balls[..., :1] * self.axis + balls[..., 1:2] * self.radial
+
+    def forces(self, u):
+        """Energy and its gradient by u = (x, y, z, xi, lambda, ball axial, ball radial), one row a ball."""
+        place = self.positions(u[..., 5:])
+        arm = place - u[..., :3]
+        approach_i, normal_i, load_i, _ = self.inner.contact(rotation(u[..., 3], u[..., 4]), arm)
+        approach_o, normal_o, load_o, _ = self.outer.contact(self.frame, place - self.centre)
+        weight = self.mass * self.gravity
+        energy = 0.4 * (load_i * approach_i + load_o * approach_o) - place @ weight - 0.5 * self.spin * u[..., 6]**2
+        on_race = load_i[..., None] * normal_i
+        moment = cross(arm, on_race)
+        about_z = moment[..., 0] * np.sin(u[..., 3]) + moment[..., 2] * np.cos(u[..., 3])   # tilted Z of the race
+        on_ball = weight - on_race - load_o[..., None] * normal_o
+        radial = np.sum(on_ball * self.radial, -1) + self.spin * u[..., 6]
+        rest = np.stack([moment[..., 1], about_z, on_ball @ self.axis, radial], -1)
+        return energy.real, -np.concatenate([on_race, rest], -1)
+
+    def derivatives(self, q, balls, columns):
+        """Energy, gradient and Hessian by some columns of u (complex step: exact to rounding), a row a ball."""
+        u = np.concatenate([np.tile(q, (self.count, 1)), balls], 1)
+        steps = np.zeros((len(columns) + 1, 1, 7), complex)
+        for row, column in enumerate(columns):
+            steps[row + 1, 0, column] = 1e-30j
+        energy, gradient = self.forces(u + steps)
+        return energy[0], gradient[0].real, np.moveaxis(gradient[1:].imag, 0, -1) / 1e-30
+
+    def settle(self, q):
+        """Equilibrium of every ball in its meridian plane: Newton's method, from two springs in series."""
+        share = 1.0 / (1.0 + (self.outer.stiffness / self.inner.stiffness)**(2.0 / 3.0))
+        balls, base = np.tile([0.0, self.pitch], (self.count, 1)), np.array([self.outer.axial, self.outer.radial])
+        for _ in range(4):
+            approach, normal, _, _ = self.inner.contact(rotation(q[3], q[4]), self.positions(balls) - q[:3])
+            away = np.stack([normal @ self.axis, np.sum(normal * self.radial, 1)], 1)
+            line = balls - away * (approach + self.inner.gap)[:, None] - base
+            length = np.linalg.norm(line, axis=1, keepdims=True)
+            overlap = length - self.inner.gap - self.outer.gap
+            balls = base + line / length * (self.outer.gap + overlap * np.where(overlap > 0.0, share, 0.5))
+        for _ in range(60):
+            _, gradient, hessian = self.derivatives(q, balls, (5, 6))
+            values, vectors = np.linalg.eigh(hessian[:, 5:])
+            values = np.maximum(abs(values), 1e-10 * abs(values).max(1, keepdims=True) + 1e-300)
+            step = -np.einsum("bij,bj,bkj,bk->bi", vectors, 1.0 / values, vectors, gradient[:, 5:])
+            step *= np.minimum(1.0, 0.02 * self.ball / (np.linalg.norm(step, axis=1) + 1e-300))[:, None]
+            residual = np.linalg.norm(gradient[:, 5:], axis=1) / values.max(1)
+            step[residual < 2e-16 * self.pitch] = 0.0                       # as good as rounding allows
+            if not step.any():
+                break
+            balls = balls + step
+        return balls
+
+    def condensed(self, q):
+        """Energy, loads and 5 x 5 stiffness with every ball in equilibrium, and the balls."""
+        balls = self.settle(q)
+        energy, gradient, hessian = self.derivatives(q, balls, range(7))
+        stiffness = sum((h[:5, :5] - h[:5, 5:] @ np.linalg.pinv(h[5:, 5:], hermitian=True) @ h[5:, :5]
+                         for h in hessian if h[:5, 5:].any()), np.zeros((5, 5)))
+        return energy.sum(), gradient[:, :5].sum(0), 0.5 * (stiffness + stiffness.T), balls
+
+    def equilibrium(self, table, weight=np.zeros(3)):
+        """Position of the inner race where contact forces balance the loads (3.4.5, 4.3): trust-radius Newton."""
+        q, load, free = boundary(table)
+        load[:3] += weight
+        scale = np.array([1.0, 1.0, 1.0, self.pitch, self.pitch])[free]
+        state, radius, enough = self.condensed(q), 2e-6, 1e-6 * max(1.0, abs(load).max())
+        for _ in range(300 if free.any() else 0):
+            gradient = (state[1] - load)[free] / scale
+            values, vectors = np.linalg.eigh(state[2][np.ix_(free, free)] / np.outer(scale, scale))
+            part, old = vectors.T @ gradient, np.linalg.norm(gradient)
+            shift = 0.0 if values[0] > 1e-7 * abs(values).max() else 1e-3 - values[0]
+            if shift == 0.0 and np.linalg.norm(part / values) < 1e-16 * self.pitch:
+                break
+            while np.linalg.norm(part / (values + shift)) > radius:
+                shift = max(1.5 * shift, 1e-6 * max(abs(values).max(), 1.0))
+            step = np.zeros(5)
+            step[free] = -(vectors @ (part / (values + shift))) / scale
+            trial = self.condensed(q + step)
+            change = trial[0] - state[0] - load @ step
+            new = np.linalg.norm((trial[1] - load)[free] / scale)
+            if change < 0.0 or (new < old and change < 1e-10 * abs(state[0])):
+                q, state, radius = q + step, trial, min(2.0 * radius, 1e-4)
+            elif old < enough:                                              # as good as rounding allows
+                break
+            else:
+                radius = 0.25 * np.linalg.norm(step[free] * scale)
+        if free.any() and (old > enough or values[0] <= 1e-9 * values[-1]):
+            raise Refused("a position that the loads do not determine, or that is not found,")
+        return q, state
+
+
+def value(number, unit):
+    return {"value": float(number), "unit": unit}
+
+
+def vector(numbers, unit):
+    return {axis: value(number, unit) for axis, number in zip("xyz", numbers)}
+
+
+def coordinates(numbers, force, moment, factor=1.0):
+    return vector(numbers[:3], force) | {key: value(n * factor, moment) for key, n in zip(COORDINATES[3:], numbers[3:])}
+
+
+def flat(node, name=""):
+    """One row of the table: column names joined by underscores, with units."""
+    if not isinstance(node, dict) or set(node) == {"value", "unit"}:
+        return {f"{name} [{node['unit']}]": node["value"]} if isinstance(node, dict) else {f"{name} [1]": node}
+    return {k: v for key, item in node.items() for k, v in flat(item, f"{name}_{key}" if name else key).items()}
+
+
+def statics(scene, bearing):
+    """Summary and table of the equilibrium."""
+    q, (_, loads, stiffness, balls) = bearing.equilibrium(scene.get("inner_race", {}))
+    place, contacts, summed = bearing.positions(balls), {}, {}
+    for name, race, frame, centre in (("inner", bearing.inner, rotation(q[3], q[4]), q[:3]),
+                                      ("outer", bearing.outer, bearing.frame, bearing.centre)):
+        approach, normal, load, angle = race.contact(frame, place - centre)
+        force = load[:, None] * normal
+        contacts[name] = (load, approach, angle / DEGREE, *race.ellipse(load), force)
+        summed[name] = {"contact_force": vector(force.sum(0), "N"),
+                        "contact_moment": vector(cross(place - centre, force).sum(0), "N m")}
+    cage = np.sum((contacts["inner"][-1] - bearing.mass * bearing.gravity) * bearing.along, 1)      # on the ball
+    names, listed = ("load", "approach", "contact_angle", "semi_major", "semi_minor", "peak_pressure"), []
+    units = ("N", "m", "deg", "m", "m", "Pa")
+    for i, azimuth in enumerate(bearing.azimuth):
+        ball = {"ball": i + 1, "azimuth": value(azimuth / DEGREE % 360.0, "deg"), "position": vector(place[i], "m"),
+                "cage_force": value(cage[i], "N")}
+        for name, data in contacts.items():
+            ball[name] = {key: value(column[i], unit) for column, key, unit in zip(data, names, units)}
+            ball[name]["force_on_race"] = vector(data[-1][i], "N")
+        listed.append(ball)
+    largest = {name: data[0].max() for name, data in contacts.items()}
+    loaded = {name: np.flatnonzero(data[0] > 0.01 * largest[name]) for name, data in contacts.items()}
+    where, gamma, count = loaded["inner"], bearing.gamma, bearing.count
+    widest = np.diff(where, append=where[:1] + count).max(initial=0)        # from one loaded ball to the next
+    extent = 360.0 if len(where) == count else 360.0 * (1.0 - widest / count) * bool(len(where))
+    spin = 0.5 * bearing.pitch / bearing.ball * (1 - gamma**2)
+    ratios = {"cage": 0.5 * (1 - gamma), "ball_pass_outer": 0.5 * count * (1 - gamma),
+              "ball_pass_inner": 0.5 * count * (1 + gamma), "ball_spin": spin, "twice_ball_spin": 2 * spin}
+    turning = "speed" in scene.get("inner_race", {})
+    return {
+        "kind": "static solution", "determinacy": {"kind": "determinate"},
+        "inner_race": {"position": coordinates(q, "m", "deg", 1 / DEGREE), "loads": coordinates(loads, "N", "N m")}
+        | summed["inner"], "outer_race": summed["outer"],
+        "stiffness": {key: coordinates(row, top + "/m", top + "/rad")
+                      for key, row, top in zip(COORDINATES, stiffness, ("N", "N", "N", "N m", "N m"))},
+        "load_zone": {"extent": value(extent, "deg")}
+        | {f"balls_loaded_{name}": len(index) for name, index in loaded.items()}
+        | {f"largest_{name}_load": value(load, "N") for name, load in largest.items()}
+        | {"largest_pressure": value(max(data[5].max() for data in contacts.values()), "Pa")},
+        "balls": listed,
+        "frequencies": {name: {"over_shaft": value(r, "1")}
+                        | ({"frequency": value(r * bearing.speed / (2 * np.pi), "Hz")} if turning else {})
+                        for name, r in ratios.items()},
+        "hertz": {name: {"stiffness": value(r.stiffness, "N/m^1.5"), "ellipticity": value(r.ellipticity, "1")}
+                  | {f"radius_{key}": value(1e3 * getattr(r, key), "mm") for key in ("rolling", "transverse")}
+                  for name, r in (("inner_race", bearing.inner), ("outer_race", bearing.outer))},
+    }, [flat(entry) for entry in listed]
+
+
+def motion(scene, bearing):
+    """Summary and table of a run without traction and cage: Newton's and Euler's laws (4.2.1.2)."""
+    numerics, table, count = scene["numerics"], scene["inner_race"], bearing.count
+    damping = scene.get("contact_damping", {})
+    mass, axial, transverse = (table["inertia"][key] for key in ("mass", "axial", "transverse"))
+    alpha = damping["alpha"] if damping.get("law") == "hunt-crossley" else 0.0
+    prescribed, load, free = boundary(table)
+
+    def contacts(y):
+        """Of each race: normal loads with damping, normals, arms cross normals, contact angles."""
+        place, velocity = y[10:].reshape(2, count, 3)
+        frame = rotation(y[3], y[4])
+        omega = np.array([0.0, y[8], 0.0]) + y[9] * frame[:, 2]             # angular velocity without the spin
+        for race, axes, arm, move, turn in (
+                (bearing.inner, frame, place - y[:3], velocity - y[5:8], omega),
+                (bearing.outer, bearing.frame, place - bearing.centre, velocity, 0.0 * omega)):
+            _, normal, elastic, angle = race.contact(axes, arm)
+            lever = cross(arm, normal)
+            rate = np.sum(normal * move, 1) - lever @ turn
+            yield elastic * np.maximum(1.0 + 1.5 * alpha * rate, 0.0), normal, lever, angle     # Hunt-Crossley
+
+    def rates(_, y):
+        (load_i, normal_i, lever, _), (load_o, normal_o, _, _) = contacts(y)
+        moment = (load_i @ lever) @ rotation(y[3], y[4])
+        # Euler's law in axes that tilt with the race and do not spin: w2, w3 about its Y and Z, f1 about its X.
+        w2, w3, f1 = y[8] * np.cos(y[4]), y[9], y[8] * np.sin(y[4])
+        dw2 = (moment[1] + load[3] - w3 * axial * bearing.speed) / transverse + f1 * w3
+        dw3 = (moment[2] + load[4] + w2 * axial * bearing.speed) / transverse - f1 * w2
+        dw2 = (dw2 + f1 * w3) / np.cos(y[4])                                # second derivative of the first tilt
+        race = np.concatenate([(load_i @ normal_i + load[:3]) / mass + bearing.gravity, [dw2, dw3]])
+        balls = bearing.gravity - (load_i[:, None] * normal_i + load_o[:, None] * normal_o) / bearing.mass
+        return np.concatenate([y[5:10], np.where(free, race, 0.0), y[10 + 3 * count:], balls.ravel()])
+
+    def at_rest(phase):
+        """Race and balls in equilibrium with ball 1 at this azimuth."""
+        bearing.turn_balls(phase)
+        q, state = bearing.equilibrium(table, mass * bearing.gravity)       # weight of the race
+        return np.concatenate([q, bearing.positions(state[3]).ravel()])
+
+    phase, step = scene["bearing"]["ball_phase"], 1e-4
+    if numerics.get("start", "equilibrium") == "equilibrium":               # it moves as the balls roll on
+        start = at_rest(phase)
+        speed = bearing.orbital * (at_rest(phase + step) - at_rest(phase - step)) / (2 * step)
+    else:
+        start = np.concatenate([prescribed, bearing.positions(np.tile([0.0, bearing.pitch], (count, 1))).ravel()])
+        speed = np.concatenate([np.zeros(5), (bearing.orbital * bearing.pitch * bearing.along).ravel()])
+    y = np.concatenate([start[:5], speed[:5], start[5:], speed[5:]])
+    small = np.repeat([1e-13, 1e-11, 1e-8, 1e-6, 1e-13, 1e-8], [3, 2, 3, 2, 3 * count, 3 * count])
+    times = np.arange(round(numerics["end"] / numerics["output_interval"]) + 1) * numerics["output_interval"]
+    found = solve_ivp(rates, (0.0, times[-1]), y, "RK45", times, rtol=1e-10, atol=small, max_step=2e-6)
+    rows, turned = [], bearing.azimuth
+    for time, y in zip(found.t, found.y.T):
+        place, velocity = y[10:].reshape(2, count, 3)
+        if np.min(np.linalg.norm(place - np.roll(place, 1, 0), axis=1)) < 2.0 * bearing.ball:
+            raise Refused("contact between balls")
+        (_, p2, p3), (_, v2, v3) = ((place - bearing.centre) @ bearing.frame).T, (velocity @ bearing.frame).T
+        turned = turned + (np.arctan2(p3, p2) - turned + np.pi) % (2 * np.pi) - np.pi       # all turns
+        row = {"time": value(time, "s"), "inner": coordinates(y[:5], "m", "deg", 1 / DEGREE),
+               "inner_velocity": vector(y[5:8], "m/s"), "inner_speed": value(bearing.speed, "rad/s")}
+        for i, orbit in enumerate((p2 * v3 - p3 * v2) / (p2**2 + p3**2)):
+            row[f"ball_{i + 1}"] = {"angle": value(turned[i] / DEGREE, "deg"), "orbital_speed": value(orbit, "rad/s")}
+        for name, (load_n, normal, _, angle) in zip(("inner", "outer"), contacts(y)):
+            row[f"mean_{name}_contact_angle"] = value(load_n @ angle / max(load_n.sum(), 1e-300) / DEGREE, "deg")
+            row[f"contact_force_on_{name}"] = vector(load_n @ normal, "N")
+            row |= {f"ball_{i + 1}_{name}_load": value(number, "N") for i, number in enumerate(load_n)}
+        rows.append(flat(row))
+    final = {key.split(" [")[0]: value(number, key.split("[")[1][:-1]) for key, number in rows[-1].items()}
+    return {"kind": "run", "complete": True, "final": final}, rows
+
+
+def main(resolved, out):
+    scene, out = to_si(json.loads(Path(resolved).read_text())), Path(out)
+    claim(scene)
+    summary, rows = (motion if "numerics" in scene else statics)(scene, Bearing(scene))
+    out.mkdir(parents=True, exist_ok=True)
+    with open(out / "series.csv", "w", newline="") as file:
+        csv.writer(file).writerows([list(rows[0])] + [[float(number) for number in row.values()] for row in rows])
+    (out / "summary.json").write_text(json.dumps(summary, indent=2))
+
+
+if __name__ == "__main__":
+    try:
+        main(*sys.argv[1:3])
+    except Refused as reason:
+        print(f"{reason} is not claimed", file=sys.stderr)
+        sys.exit(3)
