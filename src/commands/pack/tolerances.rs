@@ -53,7 +53,7 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
         ..Tolerances::default()
     };
     let scene = &solved.summary["scene"];
-    let mut spread = Spread::new(solved)?;
+    let mut spread = Spread::new(kind, solved)?;
     if kind != Kind::Run {
         for turn in [TAU, -TAU] {
             if let Some(turned) = shifted(scene, turn) {
@@ -145,6 +145,7 @@ fn rows_alike(one: &Series, other: &Series) -> usize {
 
 /// Largest differences to other results, channel by channel.
 struct Spread {
+    kind: Kind,
     reference: tempfile::TempDir,
     /// Largest ratio of a difference to the tolerance of [`CLASS`], and the largest difference; infinite where texts
     /// or numbers of entries differ.
@@ -152,15 +153,15 @@ struct Spread {
 }
 
 impl Spread {
-    fn new(solved: &Solved) -> Fallible<Spread> {
+    fn new(kind: Kind, solved: &Solved) -> Fallible<Spread> {
         let reference = tempfile::tempdir()?;
-        lay(solved, reference.path())?;
-        Ok(Spread { reference, largest: BTreeMap::new() })
+        lay(kind, solved, reference.path())?;
+        Ok(Spread { kind, reference, largest: BTreeMap::new() })
     }
 
     fn add(&mut self, other: &Solved) -> Fallible<()> {
         let folder = tempfile::tempdir()?;
-        lay(other, folder.path())?;
+        lay(self.kind, other, folder.path())?;
         let options = Options { default_class: Some(CLASS), ..Options::default() };
         for channel in compare(self.reference.path(), folder.path(), &options)?.channels {
             let found = match &channel.worst {
@@ -201,9 +202,9 @@ impl Spread {
 }
 
 /// What a pack would have of these results.
-fn lay(solved: &Solved, folder: &Path) -> Fallible<()> {
+fn lay(kind: Kind, solved: &Solved, folder: &Path) -> Fallible<()> {
     std::fs::write(folder.join("summary.json"), pretty(&expected(&solved.summary)))?;
-    for (name, content) in solved.tables(Kind::Run)? {
+    for (name, content) in solved.tables(kind)? {
         std::fs::write(folder.join(name), content)?;
     }
     Ok(())
