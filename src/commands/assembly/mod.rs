@@ -29,7 +29,7 @@ use std::error::Error;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
-/// Defaults in use: of bodies and springs, then of each bearing, its fit and its housing; for a quasi-static
+/// Defaults in use: of bodies and springs, of a run without bearings, then of each bearing, its fit and its housing; for a quasi-static
 /// sequence without those of motion.
 pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
     const OF_MOTION: [&str; 8] = [
@@ -58,7 +58,14 @@ pub fn defaults(scene: &AssemblyScene) -> Vec<DefaultUsed> {
         all.extend_from_slice(&solid.defaults_used);
         all
     };
-    scene.defaults_used.iter().cloned().chain(scene.bearings.iter().flat_map(of_bearing)).collect()
+    let of_plain = scene.plain.iter().flat_map(|plain| echo::defaults(plain));
+    let of_bearings = scene.bearings.iter().flat_map(of_bearing);
+    let mut all: Vec<_> =
+        scene.defaults_used.iter().cloned().chain(of_plain).chain(of_bearings).collect();
+    // A shaft in elements starts undeformed.
+    let undeformed = scene.has_shafts_in_elements();
+    all.retain(|used| !(undeformed && used.key == "numerics.start"));
+    all
 }
 
 /// Static problem of the scene; for a single bearing under the given loads with a fixed outer race, unless that

@@ -4,6 +4,8 @@ use bearing_dynamics::numeric::clock::rounded;
 use bearing_dynamics::output::compare::channels::{Leaf, leaves};
 use bearing_dynamics::output::json;
 use bearing_dynamics::output::results::RunRecord;
+use bearing_dynamics::scene::tables::keys;
+use bearing_dynamics::scene::tables::keys::Kind;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -48,5 +50,22 @@ fn differences(before: &Value, now: &Value) -> Vec<(String, String)> {
 fn text(leaf: &Leaf) -> String {
     let number = leaf.value.as_real().map(|value| rounded(value).to_string());
     let value = number.unwrap_or_else(|| leaf.value.to_string().trim_matches('"').to_string());
-    if matches!(leaf.unit.as_str(), "" | "1") { value } else { format!("{value} {}", leaf.unit) }
+    format!("{value} {}", unit(&leaf.path)).trim_end().to_string()
+}
+
+/// Unit of a number of a written-out scene.
+fn unit(path: &str) -> &'static str {
+    use Kind::{Profile, Quantities, Quantity, QuantityList, TrueOrProfile, Vector};
+    let leads = keys::find_named(path.trim_start_matches("scene."));
+    match leads.map(|leads| leads.key.kind) {
+        Some(
+            Quantity(of, _)
+            | Vector(of, _)
+            | Profile(of, _)
+            | TrueOrProfile(of, _)
+            | Quantities(of, _)
+            | QuantityList(of, _),
+        ) => of.si_unit(),
+        _ => "",
+    }
 }

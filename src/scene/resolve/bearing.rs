@@ -287,6 +287,9 @@ impl<'d> Reader<'d> {
     /// Load or prescribed motion of the five coordinates of a race.
     pub fn drives(&mut self, race: &str, ball_radius: f64) -> Result<[Drive; 5], SceneError> {
         let mut drives = [const { Drive::Load(Profile::ZERO) }; 5];
+        // A body in elements has loads on its sections only.
+        let in_elements =
+            race == "body" && self.choice_if_given("body.beam.mesh.method") == Some("explicit");
         for (drive, name) in drives.iter_mut().zip(COORDINATE_NAMES) {
             let table = format!("{race}.{name}");
             let zero = match name.starts_with("tilt") {
@@ -301,7 +304,10 @@ impl<'d> Reader<'d> {
                 self.limit_displacement(&held, profile::largest(&motion), ball_radius)?;
                 *drive = Drive::Motion(motion);
             } else {
-                self.note(&table, zero, "the coordinate is free and unloaded").fill(&loaded, 0.0);
+                let used = self.note(&table, zero, "the coordinate is free and unloaded");
+                if !in_elements {
+                    used.fill(&loaded, 0.0);
+                }
             }
         }
         Ok(drives)

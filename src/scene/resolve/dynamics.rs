@@ -85,7 +85,7 @@ pub(crate) fn rotation(reader: &mut Reader, table: &str) -> Rotation {
     }
     let speed = format!("{table}.speed");
     Rotation::Speed(reader.profile(&speed).unwrap_or_else(|| {
-        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given").fill(&speed, 0.0);
+        reader.note(&speed, "0 rpm", "neither a speed nor a torque is given");
         Profile::ZERO
     }))
 }

@@ -19,8 +19,9 @@ impl Document {
     pub(crate) fn as_name(&self, path: &str, entry: &Entry) -> Option<&'static str> {
         let table = keys::NAMED.iter().find(|table| **table == path)?;
         let is_table = matches!(entry.node.value, Value::Table(_)) && self.scope.is_none();
+        let is_known = self.named.iter().any(|named| named.name == entry.name);
         let mistyped = keys::nearest(&entry.name, keys::children(path).into_iter(), ALIKE);
-        (is_table && mistyped.is_none()).then_some(*table)
+        (is_table && (is_known || mistyped.is_none())).then_some(*table)
     }
 
     pub(crate) fn fill_named(

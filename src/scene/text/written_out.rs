@@ -42,7 +42,9 @@ impl Document {
         let mut full = self.common();
         for table in NAMED {
             let names: Vec<&str> = self.names(keys::kind_of_names(table)).collect();
-            if names.is_empty() {
+            // A bearing may have the name of a key of its race.
+            let is_key = |name: &&str| keys::children(table).contains(name);
+            if names.is_empty() || names.iter().any(is_key) {
                 continue;
             }
             full.tree.remove(table);
@@ -71,6 +73,10 @@ impl Document {
     fn fill(&mut self, path: &str, value: &Checked) {
         let Some(leads) = keys::find_named(path) else { return };
         let Leads { key, name, item: number, .. } = leads;
+        let top = key.path.split('.').next().unwrap_or_default();
+        if name.is_some_and(|name| keys::children(top).contains(&name)) {
+            return;
+        }
         let content = Content::Value(value.clone());
         let item = Item { content, offset: None, named: name.is_some() };
         if let Some(number) = number {
