@@ -3,7 +3,9 @@
 use super::Fallible;
 use super::solved::{Kind, Solved};
 use bearing_dynamics::output::Series;
-use bearing_dynamics::output::compare::tolerance::{ChannelTolerance, ToleranceClass, Tolerances};
+use bearing_dynamics::output::compare::tolerance::{
+    ChannelTolerance, RequestedTolerance, ToleranceClass, Tolerances,
+};
 use bearing_dynamics::output::compare::{Options, compare};
 use bearing_dynamics::output::pack::expected;
 use bearing_dynamics::output::results::pretty;
@@ -71,21 +73,17 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     all.channels = spread.tolerances(OF_STEPS, &reason);
     let Some(neighbour) = shifted(scene, NEIGHBOUR) else { return Ok(all) };
     let neighbour = Solved::again(kind, &neighbour, files)?;
-    let table = |of: &Solved| Series::read_csv(&of.results().join("series.csv"));
-    let (series, other) = (table(solved)?, table(&neighbour)?);
-    let rows = rows_alike(&series, &other);
-    if rows == series.data().nrows() {
-        return Ok(all);
-    }
+    let Some(rows) = rows_alike(solved, &neighbour)? else { return Ok(all) };
     all.rows = Some(rows.max(FEWEST_ROWS));
     for start in 1..=STARTS {
         let other = shifted(scene, start as f64 * NEXT_START).unwrap_or_default();
         spread.add(&Solved::again(kind, &other, files)?)?;
     }
     let of_starts = format!("{OF_STARTS} times the largest difference to {STARTS} other starts");
+    let of_table = columns(solved)?;
     for (channel, tolerance) in spread.tolerances(OF_STARTS, &of_starts) {
         // Of the trajectory the first rows are compared, as closely as the steps allow.
-        if series.column(&channel).is_none() {
+        if !of_table.contains(&channel) {
             all.channels.insert(channel, tolerance);
         }
     }
@@ -130,17 +128,19 @@ fn shifted(scene: &Value, by: f64) -> Option<Value> {
     other.get_mut("bearing").is_some_and(|of| shift(of, by)).then_some(other)
 }
 
-/// Number of first rows in which no column differs by more than [`ALIKE`] of its largest value.
-fn rows_alike(one: &Series, other: &Series) -> usize {
-    let (one, other) = (one.data(), other.data());
-    let rows = one.nrows().min(other.nrows());
-    let scales: Vec<f64> =
-        one.columns().into_iter().map(|c| c.iter().fold(0.0, |a: f64, b| a.max(b.abs()))).collect();
-    let alike = |row: &usize| {
-        let pairs = one.row(*row).into_iter().zip(other.row(*row)).zip(&scales);
-        pairs.into_iter().all(|((a, b), scale)| (a - b).abs() <= ALIKE * scale)
-    };
-    (0..rows).take_while(alike).count()
+/// Number of first rows in which no column differs by more than [`ALIKE`] of its largest value; `None` for all.
+fn rows_alike(one: &Solved, other: &Solved) -> Fallible<Option<usize>> {
+    let given = RequestedTolerance { scale_relative: ALIKE, floors: Vec::new() };
+    let options = Options { given: Some(given), ..Options::default() };
+    let [one, other] = [one, other].map(|of| of.results().join("series.csv"));
+    let Some(first) = compare(&one, &other, &options)?.first_divergence else { return Ok(None) };
+    let row = first.place.strip_prefix("row ").and_then(|rest| rest.split(' ').next());
+    Ok(Some(row.and_then(|row| row.parse::<usize>().ok()).map_or(0, |row| row - 1)))
+}
+
+fn columns(of: &Solved) -> Fallible<Vec<String>> {
+    let table = Series::read_csv(&of.results().join("series.csv"))?;
+    Ok(table.columns().iter().map(|column| column.name.clone()).collect())
 }
 
 /// Largest differences to other results, channel by channel.
