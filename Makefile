@@ -5,7 +5,7 @@ CARGO ?= cargo
 PACKAGES = -p bearing-dynamics -p verification
 VERIFY = $(CARGO) build --release --locked -q $(PACKAGES) --bins --test single_thread && "$${CARGO_TARGET_DIR:-target}/release/verify"
 
-.PHONY: verify verify-full test golden bench pareto mutants doc lint fuzz
+.PHONY: verify verify-full test golden conformance bench pareto mutants doc lint fuzz
 
 ## Benchmarks of the source against independent oracles; report in target/verify.
 verify:
@@ -26,6 +26,14 @@ test:
 ## Record new golden values: make golden CASE=misalignment_moment REASON="why they changed"; CASE=asymmetric for the asymmetric scenes
 golden:
 	$(if $(filter asymmetric,$(CASE)),GOLDEN_REASON="$(REASON)" $(CARGO) test --release --locked $(PACKAGES) --test command asymmetric_scenes,$(VERIFY) golden --case "$(CASE)" --reason "$(REASON)")
+
+## The conformance set, as folders in target/conformance and as an archive of the same bytes at every build.
+CONFORMANCE = target/conformance
+conformance:
+	$(CARGO) build --release --locked -q $(PACKAGES) --bins --test single_thread
+	@rm -rf $(CONFORMANCE)
+	"$${CARGO_TARGET_DIR:-target}/release/bearing" pack conformance/set.toml --out $(CONFORMANCE)
+	tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf - -C target conformance | gzip -n9 > $(CONFORMANCE).tar.gz
 
 ## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:
