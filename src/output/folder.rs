@@ -241,8 +241,9 @@ fn other_file(folder: &Path) -> Option<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
     names.find(|name| {
-        let picture = name.ends_with(".svg") || name.ends_with(".partial");
-        !picture && ![".lock", FIELDS, "curve.csv"].contains(&name.as_str())
+        let known =
+            name.ends_with(".svg") || name.ends_with(".partial") || name.starts_with("shard-");
+        !known && ![".lock", FIELDS, "curve.csv"].contains(&name.as_str())
     })
 }
 

@@ -57,10 +57,8 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     let scene = &solved.summary["scene"];
     let mut spread = Spread::new(kind, solved)?;
     if kind != Kind::Run {
-        for turn in [TAU, -TAU] {
-            if let Some(turned) = shifted(scene, turn) {
-                spread.add(&Solved::again(kind, &turned, files)?)?;
-            }
+        if let Some(turned) = shifted(scene, TAU) {
+            spread.add(&Solved::again(kind, &turned, files)?)?;
         }
         let reason = format!("{OF_ROUNDING} times the difference to the balls a whole turn on");
         all.channels = spread.tolerances(OF_ROUNDING, &reason);
@@ -119,7 +117,9 @@ fn shifted(scene: &Value, by: f64) -> Option<Value> {
         let mut any = false;
         if table.contains_key("balls") {
             let phase = table.get("ball_phase").and_then(Value::as_f64).unwrap_or(0.0);
-            table.insert("ball_phase".into(), (phase + by).into());
+            // Forth or back, so that a whole turn stays within a turn of zero.
+            let shifted = if phase > 0.0 { phase - by } else { phase + by };
+            table.insert("ball_phase".into(), shifted.into());
             any = true;
         }
         table.values_mut().fold(any, |any, value| shift(value, by) | any)

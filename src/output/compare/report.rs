@@ -17,7 +17,9 @@ pub fn report(comparison: &Comparison) -> String {
         Some(first) => different(&mut text, comparison, first),
     }
     list(&mut text, "not compared", &comparison.ignored);
-    list(&mut text, "not claimed", &comparison.unclaimed);
+    if !comparison.unclaimed.is_empty() {
+        line(&mut text, format!("not claimed: {}", comparison.unclaimed.join(", ")));
+    }
     list(&mut text, "only in the candidate", &comparison.only_in_candidate);
     text
 }
