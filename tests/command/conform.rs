@@ -240,3 +240,43 @@ fn a_wrong_number_is_found_and_named() {
     let (code, _) = conform(&set, CLAIM_ALL, &root.path().join("out"), &["--tags", "run"]);
     assert_eq!(code, 0);
 }
+
+/// A cage that strikes its pockets: two starts part after some milliseconds. Their statistics agree; those of a contact
+/// that is 2 % stiffer do not.
+#[test]
+fn a_chaotic_run_is_compared_by_its_statistics() {
+    let root = tempdir().unwrap();
+    let list = format!(
+        "[[case]]\nname = \"cage\"\nscene = \"{}\"\nof = \"run\"\ntags = [\"cage\"]\nlevel = 2\n\
+         set = [\"numerics.end=40 ms\", \"numerics.output_interval=1 ms\", \"output.window_start=20 ms\", \"output.plots=[]\"]\n",
+        scene("bearing_6205_run.toml")
+    );
+    let list = write(root.path(), "list.toml", &list);
+    let set = text(&root.path().join("set"));
+    done(&["pack", &list, "--out", &set]);
+    let pack = root.path().join("set/cage");
+    let rows = json(&pack.join("tolerances.json"))["rows"].as_u64().unwrap();
+    assert!((2..40).contains(&rows), "{rows}");
+    let resolved = json(&pack.join("resolved.json"));
+    let differs = |name: &str, change: &dyn Fn(&mut Value)| {
+        let mut other = resolved.clone();
+        change(&mut other);
+        let path = write(root.path(), &format!("{name}.json"), &other.to_string());
+        let out = text(&root.path().join(name));
+        done(&["run", &path, "--out", &out]);
+        let output = command().args(["compare", &text(&pack), &out]).output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, said) = differs("start", &|scene| {
+        let phase = &mut scene["bearing"]["ball_phase"];
+        *phase = (phase.as_f64().unwrap_or(0.0) + 9.5e-6).into();
+    });
+    assert_eq!(code, 0, "{said}");
+    let (code, said) = differs("stiffer", &|scene| {
+        for part in ["ball", "inner_race", "outer_race"] {
+            let modulus = &mut scene["bearing"][part]["material"]["youngs_modulus"];
+            *modulus = (1.02 * modulus.as_f64().unwrap()).into();
+        }
+    });
+    assert!(code == 1 && said.contains("window.channels.inner_z.mean"), "{said}");
+}

@@ -2,7 +2,6 @@
 
 use super::Fallible;
 use super::solved::{Kind, Solved};
-use bearing_dynamics::output::Series;
 use bearing_dynamics::output::compare::tolerance::{
     ChannelTolerance, RequestedTolerance, ToleranceClass, Tolerances,
 };
@@ -64,27 +63,37 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
         all.channels = spread.tolerances(OF_ROUNDING, &reason);
         return Ok(all);
     }
-    if let Some(finer) = finer(scene) {
-        spread.add(&Solved::again(kind, &finer, files)?)?;
+    let finer = match finer(scene) {
+        Some(finer) => vec![Solved::again(kind, &finer, files)?],
+        None => Vec::new(),
+    };
+    let neighbour = shifted(scene, NEIGHBOUR);
+    let neighbour = neighbour.map(|of| Solved::again(kind, &of, files)).transpose()?;
+    let is_chaotic = match &neighbour {
+        Some(neighbour) => rows_alike(solved, neighbour)?.is_some(),
+        None => false,
+    };
+    if !is_chaotic {
+        finer.iter().try_for_each(|finer| spread.add(finer))?;
+        let reason = format!("{OF_STEPS} times the difference to a run with finer steps");
+        all.channels = spread.tolerances(OF_STEPS, &reason);
+        return Ok(all);
     }
-    let reason = format!("{OF_STEPS} times the difference to a run with finer steps");
-    all.channels = spread.tolerances(OF_STEPS, &reason);
-    let Some(neighbour) = shifted(scene, NEIGHBOUR) else { return Ok(all) };
-    let neighbour = Solved::again(kind, &neighbour, files)?;
-    let Some(rows) = rows_alike(solved, &neighbour)? else { return Ok(all) };
-    all.rows = Some(rows.max(FEWEST_ROWS));
+    let mut others = finer;
+    let mut rows = usize::MAX;
     for start in 1..=STARTS {
         let other = shifted(scene, start as f64 * NEXT_START).unwrap_or_default();
-        spread.add(&Solved::again(kind, &other, files)?)?;
+        let other = Solved::again(kind, &other, files)?;
+        rows = rows.min(rows_alike(solved, &other)?.unwrap_or(usize::MAX));
+        others.push(other);
     }
-    let of_starts = format!("{OF_STARTS} times the largest difference to {STARTS} other starts");
-    let of_table = columns(solved)?;
-    for (channel, tolerance) in spread.tolerances(OF_STARTS, &of_starts) {
-        // Of the trajectory the first rows are compared, as closely as the steps allow.
-        if !of_table.contains(&channel) {
-            all.channels.insert(channel, tolerance);
-        }
-    }
+    spread.rows = (rows < usize::MAX).then_some(rows.max(FEWEST_ROWS));
+    all.rows = spread.rows;
+    others.iter().try_for_each(|other| spread.add(other))?;
+    let reason = format!(
+        "{OF_STARTS} times the largest difference to {STARTS} other starts and to finer steps"
+    );
+    all.channels = spread.tolerances(OF_STARTS, &reason);
     Ok(all)
 }
 
@@ -138,14 +147,11 @@ fn rows_alike(one: &Solved, other: &Solved) -> Fallible<Option<usize>> {
     Ok(Some(row.and_then(|row| row.parse::<usize>().ok()).map_or(0, |row| row - 1)))
 }
 
-fn columns(of: &Solved) -> Fallible<Vec<String>> {
-    let table = Series::read_csv(&of.results().join("series.csv"))?;
-    Ok(table.columns().iter().map(|column| column.name.clone()).collect())
-}
-
 /// Largest differences to other results, channel by channel.
 struct Spread {
     kind: Kind,
+    /// First rows of tables that count; `None` for all.
+    rows: Option<usize>,
     reference: tempfile::TempDir,
     /// Largest ratio of a difference to the tolerance of [`CLASS`], and the largest difference; infinite where texts
     /// or numbers of entries differ.
@@ -156,13 +162,15 @@ impl Spread {
     fn new(kind: Kind, solved: &Solved) -> Fallible<Spread> {
         let reference = tempfile::tempdir()?;
         lay(kind, solved, reference.path())?;
-        Ok(Spread { kind, reference, largest: BTreeMap::new() })
+        Ok(Spread { kind, rows: None, reference, largest: BTreeMap::new() })
     }
 
     fn add(&mut self, other: &Solved) -> Fallible<()> {
         let folder = tempfile::tempdir()?;
         lay(self.kind, other, folder.path())?;
-        let options = Options { default_class: Some(CLASS), ..Options::default() };
+        let tolerances =
+            Tolerances { class: Some(CLASS), rows: self.rows, ..Tolerances::default() };
+        let options = Options { tolerances: Some(tolerances), ..Options::default() };
         for channel in compare(self.reference.path(), folder.path(), &options)?.channels {
             let found = match &channel.worst {
                 Some(worst) => (worst.ratio, worst.difference),
