@@ -509,12 +509,19 @@ fn shards_make_the_table_of_the_whole() {
     for task in 1..=2 {
         let mut command = command();
         command.args(["sweep", &path, "--out", &text(&slurm)]).args(vary);
-        let variables = [("ID", task), ("COUNT", 2), ("MIN", 1)];
+        let variables = [("ID", task), ("COUNT", 2), ("MIN", 1), ("MAX", 2)];
         for (name, value) in variables {
             command.env(format!("SLURM_ARRAY_TASK_{name}"), value.to_string());
         }
         assert!(command.status().unwrap().success());
     }
+    // One of them again.
+    let mut again = command();
+    again.args(["sweep", &path, "--out", &text(&slurm)]).args(vary);
+    for (name, value) in [("ID", "2"), ("COUNT", "1"), ("MIN", "2"), ("MAX", "2")] {
+        again.env(format!("SLURM_ARRAY_TASK_{name}"), value);
+    }
+    assert_eq!(again.output().unwrap().status.code(), Some(2));
     assert_eq!(sweep(&slurm, &["--merge"]).code, Some(0));
     let [one, other] = [&whole, &slurm].map(|folder| read(&folder.join("sweep.csv")));
     assert!(one == other);

@@ -38,15 +38,21 @@ impl Shard {
                 .into()),
             };
         }
-        let [id, count, least] =
-            ["ID", "COUNT", "MIN"].map(|of| number(&format!("SLURM_ARRAY_TASK_{of}")));
-        Ok(match (id, count) {
-            (Some(id), Some(count)) if count > 0 => {
-                let from_first = id.saturating_sub(least.unwrap_or(0));
-                Shard { index: from_first % count, count }
-            }
-            _ => Shard::WHOLE,
-        })
+        let [id, count, least, most] =
+            ["ID", "COUNT", "MIN", "MAX"].map(|of| number(&format!("SLURM_ARRAY_TASK_{of}")));
+        let (Some(id), Some(count), Some(least), Some(most)) = (id, count, least, most) else {
+            return Ok(Shard::WHOLE);
+        };
+        // A part of an array that is submitted again does not know the number of shards.
+        let all = least <= 1 && most + 1 == least + count && count > 1;
+        if !all {
+            return Err(format!(
+                "tasks {least} to {most} of a Slurm array of {count} are not the shards from the first to the last. Hint: give \
+                 --shard i/n"
+            )
+            .into());
+        }
+        Ok(Shard { index: id - least, count })
     }
 
     pub fn is_whole(self) -> bool {
