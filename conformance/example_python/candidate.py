@@ -1,8 +1,9 @@
 """A ball bearing in equilibrium and in simple motion, from the documentation of bearing-dynamics.
 
-Usage: python candidate.py RESOLVED_JSON OUT_FOLDER. Reads the resolved scene of a case pack, writes summary.json and
-series.csv. Equation numbers are those of the dissertation; axes, signs and symbols are those of docs/theory.md.
-Exit code 3: the scene needs something that this program does not claim. Quantities are in SI units and radians.
+Usage: python candidate.py KIND RESOLVED_JSON OUT_FOLDER. Reads the resolved scene of a case pack (docs/guide/conformance.md),
+writes summary.json and series.csv. Equation numbers are those of the dissertation; axes, signs and symbols are those of
+docs/theory.md. Exit code 3: the pack needs something that this program does not claim. It leaves out the tags life,
+energy and statistics. Quantities are in SI units and radians.
 """
 
 import csv
@@ -17,41 +18,28 @@ from scipy.special import ellipe, ellipk
 
 COORDINATES = ("x", "y", "z", "tilt_y", "tilt_z")
 DEGREE = np.pi / 180.0
-UNITS = {"1": 1, "m": 1, "mm": 1e-3, "um": 1e-6, "kg": 1, "g": 1e-3, "N": 1, "kN": 1e3, "N m": 1, "rad": 1, "kg m^2": 1,
-         "deg": DEGREE, "rad/s": 1, "rpm": np.pi / 30, "Hz": 2 * np.pi, "Pa": 1, "MPa": 1e6, "GPa": 1e9, "kg/m^3": 1,
-         "m/s^2": 1, "s": 1, "ms": 1e-3, "us": 1e-6, "s/m": 1}
 
 
 class Refused(Exception):
     """The scene needs something that this program does not claim."""
 
 
-def to_si(node):
-    """The scene with every {"value", "unit"} replaced by its value in SI units."""
-    if isinstance(node, list):
-        return [to_si(item) for item in node]
-    if isinstance(node, dict) and set(node) == {"value", "unit"} and node["unit"] in UNITS:
-        return node["value"] * UNITS[node["unit"]]
-    return {key: to_si(item) for key, item in node.items()} if isinstance(node, dict) else node
-
-
-def claim(scene):
+def claim(kind, scene):
     """Refuses what this program does not compute."""
     bearing, inner, outer = (scene.get(key, {}) for key in ("bearing", "inner_race", "outer_race"))
-    known = {"": "title source defaults assumptions bearing inner_race outer_race ball_forces traction contact_damping "
-                 "ball_contact numerics output sweep", "inner_race.": "x y z tilt_y tilt_z speed inertia",
-             "outer_race.": "x y z tilt_y tilt_z motion"}
+    known = {"": "title source defaults units assumptions bearing inner_race outer_race ball_forces traction "
+                 "contact_damping ball_contact numerics output", "inner_race.": "x y z tilt_y tilt_z speed inertia",
+             "outer_race.": "x y z tilt_y tilt_z motion", "bearing.": "kind balls ball_phase hertz pitch_radius length "
+             "contact_angle clearance inner_race outer_race ball rating cage dent spall waviness"}
     neutral = (None, False, 0.0, {}, [], "inner_race", "outer_race", "fixed")
-    refused = [prefix + key for (prefix, keys), table in zip(known.items(), (scene, inner, outer))
+    refused = [prefix + key for (prefix, keys), table in zip(known.items(), (scene, inner, outer, bearing))
                for key, item in table.items() if key not in keys.split() and item not in neutral]
-    refused += [f"bearing.{key}" for key in ("inner_on", "outer_on", "inner_at", "outer_at", "reversed")
-                if bearing.get(key) not in neutral]
-    profiles = [inner.get("speed", 0.0)] + [v for key in COORDINATES for v in inner.get(key, {}).values()]
-    profiles += [outer.get(key) for key in COORDINATES]
-    reasons = {"more than one bearing": "kind" not in bearing, "outer_race.motion": outer.get("motion") not in neutral,
-               "a profile over time": any(isinstance(item, dict) for item in profiles)}
-    if "numerics" in scene:
-        reasons |= {"traction": scene.get("traction", {}).get("law") != "none", "no inertia": "inertia" not in inner,
+    constant = [inner.get("speed"), *outer.values(), *(v for key in COORDINATES for v in inner.get(key, {}).values())]
+    reasons = {f"kind {kind}": kind not in ("statics", "run"), "more than one bearing": "kind" not in bearing,
+               "outer_race.motion": outer.get("motion") not in neutral,
+               "a profile over time": any(isinstance(item, dict) for item in constant)}
+    if kind == "run":
+        reasons |= {"traction": scene.get("traction", {}).get("law") != "none",
                     "a moving cage": "mass" in bearing.get("cage", {}), "a deviation": "deviations" in bearing["ball"],
                     "a profile of a raceway": any(bearing.get(key) for key in ("dent", "spall", "waviness"))}
     for name in refused + [name for name, true in reasons.items() if true]:
@@ -69,6 +57,26 @@ def boundary(table):
     return q, load, free
 
 
+def sizes(table):
+    """Sizes in use, with the clearance applied: section "Derived sizes" of docs/scene.md."""
+    ball, races = table["ball"], (table["inner_race"], table["outer_race"])
+    clearance, angle = table.get("clearance", {}), table.get("contact_angle", 0.0)
+    nominal = radius = ball["radius"] if "radius" in ball else 0.5 * ball["diameter"]
+    gap, through = clearance.get("radial", 0.5 * clearance.get("diametral", 0.0)), clearance.get("through", "ball")
+    grooves = np.array([race["groove_radius"] if "groove_radius" in race else 2 * nominal * race["conformity"]
+                        if "conformity" in race else nominal / race["osculation"] for race in races])
+    rooms, before = (grooves - nominal) * [1.0, -1.0], 0.0
+    axial, centres = rooms * np.sin(angle), table["pitch_radius"] + rooms * np.cos(angle)   # parts that just touch
+    if table["kind"] == "deep-groove":                                      # gap between the nominal parts
+        before = races[1]["radius"] - races[0]["radius"] - 2.0 * radius
+        gap, centres = gap if clearance else before, [race["radius"] for race in races] + grooves * [1.0, -1.0]
+    share = {"inner-race": (-1.0, 0.0), "outer-race": (0.0, 1.0), "races": (-0.5, 0.5), "ball": (0.0, 0.0)}[through]
+    centres = centres + np.array(share) * (gap - before)
+    if through == "ball" and clearance:
+        radius = 0.5 * (sum(grooves) - np.hypot(axial[0] - axial[1], centres[0] - centres[1] + gap))
+    return radius, nominal, gap, through, list(zip(axial, centres, grooves))
+
+
 def rotation(tilt_y, tilt_z):
     """R_y(xi) R_z(lambda): components of the race to those of the scene, transpose of (2.16)."""
     cy, sy, cz, sz = np.cos(tilt_y), np.sin(tilt_y), np.cos(tilt_z), np.sin(tilt_z)
@@ -83,15 +91,14 @@ def cross(a, b):
 class Race:
     """A raceway as a torus, and its Hertz contact with a ball at the nominal geometry."""
 
-    def __init__(self, table, ball, radius, cosine, sign, fit):
-        self.axial, self.radial = table["groove_centre_axial"], table["groove_centre_radius"]
-        groove = table["groove_radius"]
+    def __init__(self, groove_circle, materials, radius, cosine, sign, fit):
+        self.axial, self.radial, groove = groove_circle
+        self.groove, self.bottom = groove, self.radial - sign * groove      # radii of cross-section and groove bottom
         self.gap = groove - radius                                          # groove centre to ball centre
         self.rolling = 1.0 / (1.0 / radius + sign / (self.radial / cosine - sign * groove))     # R_x
         self.transverse = 1.0 / (1.0 / radius - 1.0 / groove)                                   # R_y
         ratio, self.curvature = self.transverse / self.rolling, 1.0 / self.rolling + 1.0 / self.transverse
-        self.modulus = 2.0 / sum((1.0 - m["poisson_ratio"]**2) / m["youngs_modulus"]
-                                 for m in (ball["material"], table["material"]))                # E'
+        self.modulus = 2.0 / sum((1.0 - m["poisson_ratio"]**2) / m["youngs_modulus"] for m in materials)    # E'
         integrals = lambda k: (ellipk(1.0 - k**-2.0), ellipe(1.0 - k**-2.0))
         if fit:                                                             # Hamrock and Brewe
             self.ellipticity = 1.0339 * ratio**0.636
@@ -104,10 +111,7 @@ class Race:
             2.0 * self.second / (9.0 * self.curvature * first**3))
 
     def contact(self, frame, arm):
-        """Approach, normal, elastic load (2.1) and contact angle; `arm` runs from the race's centre to the ball's.
-
-        The normal runs from groove centre to ball: it is the direction of the force on the race.
-        """
+        """Approach, normal (from groove to ball centre: force on the race), elastic load (2.1), contact angle."""
         local = np.einsum("...ji,...j->...i", frame, arm)
         distance = np.sqrt(local[..., 1]**2 + local[..., 2]**2)
         axial, radial = local[..., 0] - self.axial, distance - self.radial
@@ -127,19 +131,20 @@ class Race:
 
 
 class Bearing:
-    def __init__(self, scene):
+    def __init__(self, kind, scene):
         table, ball, forces = scene["bearing"], scene["bearing"]["ball"], scene.get("ball_forces", {})
-        self.count, self.ball, self.pitch = table["balls"], ball["radius"], table["pitch_radius"]
+        self.ball, self.nominal, self.clearance, self.through, circles = sizes(table)
+        self.count, self.pitch, self.angle = table["balls"], table["pitch_radius"], table.get("contact_angle", 0.0)
         self.mass = ball["material"]["density"] * 4.0 / 3.0 * np.pi * self.ball**3
         self.gravity = np.array(forces.get("gravity", [0.0, 0.0, 0.0]))
-        cosine = np.cos(table["contact_angle"])
+        cosine, fit = np.cos(self.angle), table["hertz"] == "hamrock-brewe"
         self.gamma = self.ball / self.pitch * cosine
-        self.inner, self.outer = (Race(table[name], ball, self.ball, cosine, sign, table["hertz"] == "hamrock-brewe")
-                                  for name, sign in (("inner_race", 1.0), ("outer_race", -1.0)))
+        self.inner, self.outer = (
+            Race(circle, (ball["material"], table[name]["material"]), self.ball, cosine, sign, fit)
+            for circle, name, sign in zip(circles, ("inner_race", "outer_race"), (1.0, -1.0)))
         self.speed = scene.get("inner_race", {}).get("speed", 0.0)
         self.orbital = 0.5 * (1.0 - self.gamma) * self.speed                # rolling without slip, nominal angle
-        # A run always has centrifugal forces.
-        self.spin = self.mass * self.orbital**2 if "numerics" in scene or forces.get("centrifugal") else 0.0
+        self.spin = self.mass * self.orbital**2 if kind == "run" or forces.get("centrifugal") else 0.0  # runs: always
         place = [scene.get("outer_race", {}).get(key, 0.0) for key in COORDINATES]
         self.centre, self.frame = np.array(place[:3]), rotation(place[3], place[4])   # of the outer race
         self.axis = self.frame[:, 0]
@@ -262,9 +267,23 @@ def flat(node, name=""):
     return {k: v for key, item in node.items() for k, v in flat(item, f"{name}_{key}" if name else key).items()}
 
 
+def geometry(bearing):
+    """Sizes in use."""
+    def lengths(**named):
+        return {name: value(1e3 * length, "mm") for name, length in named.items()}
+    races = {f"{name}_race": {"conformity": value(0.5 * of.groove / bearing.nominal, "1"),
+                              "osculation": value(bearing.nominal / of.groove, "1")} | lengths(
+        radius=of.bottom, groove_radius=of.groove, groove_centre_radius=of.radial, groove_centre_axial=of.axial)
+        for name, of in (("inner", bearing.inner), ("outer", bearing.outer))}
+    return races | {"clearance_through": bearing.through, "contact_angle": value(bearing.angle / DEGREE, "deg"),
+                    "ball_mass": value(bearing.mass, "kg")} | lengths(
+        radial_clearance=bearing.clearance, pitch_radius=bearing.pitch, ball_radius=bearing.ball)
+
+
 def statics(scene, bearing):
     """Summary and table of the equilibrium."""
-    q, (_, loads, stiffness, balls) = bearing.equilibrium(scene.get("inner_race", {}))
+    table = scene.get("inner_race", {})
+    q, (_, loads, stiffness, balls) = bearing.equilibrium(table)
     place, contacts, summed = bearing.positions(balls), {}, {}
     for name, race, frame, centre in (("inner", bearing.inner, rotation(q[3], q[4]), q[:3]),
                                       ("outer", bearing.outer, bearing.frame, bearing.centre)):
@@ -274,13 +293,13 @@ def statics(scene, bearing):
         summed[name] = {"contact_force": vector(force.sum(0), "N"),
                         "contact_moment": vector(cross(place - centre, force).sum(0), "N m")}
     cage = np.sum((contacts["inner"][-1] - bearing.mass * bearing.gravity) * bearing.along, 1)      # on the ball
-    names, listed = ("load", "approach", "contact_angle", "semi_major", "semi_minor", "peak_pressure"), []
-    units = ("N", "m", "deg", "m", "m", "Pa")
+    units = dict(load="N", approach="m", contact_angle="deg", semi_major="m", semi_minor="m", peak_pressure="Pa")
+    listed = []
     for i, azimuth in enumerate(bearing.azimuth):
         ball = {"ball": i + 1, "azimuth": value(azimuth / DEGREE % 360.0, "deg"), "position": vector(place[i], "m"),
                 "cage_force": value(cage[i], "N")}
         for name, data in contacts.items():
-            ball[name] = {key: value(column[i], unit) for column, key, unit in zip(data, names, units)}
+            ball[name] = {key: value(column[i], unit) for column, (key, unit) in zip(data, units.items())}
             ball[name]["force_on_race"] = vector(data[-1][i], "N")
         listed.append(ball)
     largest = {name: data[0].max() for name, data in contacts.items()}
@@ -288,10 +307,9 @@ def statics(scene, bearing):
     where, gamma, count = loaded["inner"], bearing.gamma, bearing.count
     widest = np.diff(where, append=where[:1] + count).max(initial=0)        # from one loaded ball to the next
     extent = 360.0 if len(where) == count else 360.0 * (1.0 - widest / count) * bool(len(where))
-    spin = 0.5 * bearing.pitch / bearing.ball * (1 - gamma**2)
-    ratios = {"cage": 0.5 * (1 - gamma), "ball_pass_outer": 0.5 * count * (1 - gamma),
-              "ball_pass_inner": 0.5 * count * (1 + gamma), "ball_spin": spin, "twice_ball_spin": 2 * spin}
-    turning = "speed" in scene.get("inner_race", {})
+    less, more, spin = 0.5 * (1 - gamma), 0.5 * (1 + gamma), 0.5 * bearing.pitch / bearing.ball * (1 - gamma**2)
+    ratios = dict(cage=less, ball_pass_outer=count * less, ball_pass_inner=count * more, ball_spin=spin,
+                  twice_ball_spin=2 * spin)
     return {
         "kind": "static solution", "determinacy": {"kind": "determinate"},
         "inner_race": {"position": coordinates(q, "m", "deg", 1 / DEGREE), "loads": coordinates(loads, "N", "N m")}
@@ -304,19 +322,20 @@ def statics(scene, bearing):
         | {"largest_pressure": value(max(data[5].max() for data in contacts.values()), "Pa")},
         "balls": listed,
         "frequencies": {name: {"over_shaft": value(r, "1")}
-                        | ({"frequency": value(r * bearing.speed / (2 * np.pi), "Hz")} if turning else {})
+                        | ({"frequency": value(r * bearing.speed / (2 * np.pi), "Hz")} if "speed" in table else {})
                         for name, r in ratios.items()},
         "hertz": {name: {"stiffness": value(r.stiffness, "N/m^1.5"), "ellipticity": value(r.ellipticity, "1")}
                   | {f"radius_{key}": value(1e3 * getattr(r, key), "mm") for key in ("rolling", "transverse")}
                   for name, r in (("inner_race", bearing.inner), ("outer_race", bearing.outer))},
+        "geometry": geometry(bearing),
     }, [flat(entry) for entry in listed]
 
 
 def motion(scene, bearing):
     """Summary and table of a run without traction and cage: Newton's and Euler's laws (4.2.1.2)."""
-    numerics, table, count = scene["numerics"], scene["inner_race"], bearing.count
-    damping = scene.get("contact_damping", {})
-    mass, axial, transverse = (table["inertia"][key] for key in ("mass", "axial", "transverse"))
+    numerics, table, count, damping = scene["numerics"], scene["inner_race"], bearing.count, scene["contact_damping"]
+    inertias = dict(mass="kg", axial="kg m^2", transverse="kg m^2")
+    mass, axial, transverse = (table["inertia"][key] for key in inertias)
     alpha = damping["alpha"] if damping.get("law") == "hunt-crossley" else 0.0
     prescribed, load, free = boundary(table)
 
@@ -338,7 +357,7 @@ def motion(scene, bearing):
         moment = (load_i @ lever) @ rotation(y[3], y[4])
         # Euler's law in axes that tilt with the race and do not spin: w2, w3 about its Y and Z, f1 about its X.
         w2, w3, f1 = y[8] * np.cos(y[4]), y[9], y[8] * np.sin(y[4])
-        dw2 = (moment[1] + load[3] - w3 * axial * bearing.speed) / transverse + f1 * w3
+        dw2 = (moment[1] + load[3] / np.cos(y[4]) - w3 * axial * bearing.speed) / transverse + f1 * w3
         dw3 = (moment[2] + load[4] + w2 * axial * bearing.speed) / transverse - f1 * w2
         dw2 = (dw2 + f1 * w3) / np.cos(y[4])                                # second derivative of the first tilt
         race = np.concatenate([(load_i @ normal_i + load[:3]) / mass + bearing.gravity, [dw2, dw3]])
@@ -349,19 +368,23 @@ def motion(scene, bearing):
         """Race and balls in equilibrium with ball 1 at this azimuth."""
         bearing.turn_balls(phase)
         q, state = bearing.equilibrium(table, mass * bearing.gravity)       # weight of the race
-        return np.concatenate([q, bearing.positions(state[3]).ravel()])
+        return np.concatenate([q, state[3].ravel()])
 
-    phase, step = scene["bearing"]["ball_phase"], 1e-4
-    if numerics.get("start", "equilibrium") == "equilibrium":               # it moves as the balls roll on
+    phase = scene["bearing"]["ball_phase"]
+    start, speed = np.concatenate([prescribed, np.tile([0.0, bearing.pitch], count)]), np.zeros(5 + 2 * count)
+    if numerics["start"] == "equilibrium":
         start = at_rest(phase)
-        speed = bearing.orbital * (at_rest(phase + step) - at_rest(phase - step)) / (2 * step)
-    else:
-        start = np.concatenate([prescribed, bearing.positions(np.tile([0.0, bearing.pitch], (count, 1))).ravel()])
-        speed = np.concatenate([np.zeros(5), (bearing.orbital * bearing.pitch * bearing.along).ravel()])
-    y = np.concatenate([start[:5], speed[:5], start[5:], speed[5:]])
-    small = np.repeat([1e-13, 1e-11, 1e-8, 1e-6, 1e-13, 1e-8], [3, 2, 3, 2, 3 * count, 3 * count])
+        step = min(0.02 * np.pi / count, 1e-4 * abs(bearing.orbital)) * np.sign(bearing.orbital)
+        if step:                                                            # it moves as the balls roll on
+            first, second = at_rest(phase + step) - start, at_rest(phase + 2.0 * step) - start
+            speed = bearing.orbital * (4.0 * first - second) / (2.0 * step)
+    bearing.turn_balls(phase)
+    balls, drift = start[5:].reshape(count, 2), speed[5:].reshape(count, 2)
+    velocity = bearing.positions(drift) - bearing.centre + bearing.orbital * balls[:, 1:] * bearing.along
+    y = np.concatenate([start[:5], speed[:5], bearing.positions(balls).ravel(), velocity.ravel()])
+    small = np.repeat([1e-14, 1e-12, 1e-9, 1e-7, 1e-14, 1e-9], [3, 2, 3, 2, 3 * count, 3 * count])
     times = np.arange(round(numerics["end"] / numerics["output_interval"]) + 1) * numerics["output_interval"]
-    found = solve_ivp(rates, (0.0, times[-1]), y, "RK45", times, rtol=1e-10, atol=small, max_step=2e-6)
+    found = solve_ivp(rates, (0.0, times[-1]), y, "DOP853", times, rtol=1e-13, atol=small, max_step=1e-5)
     rows, turned = [], bearing.azimuth
     for time, y in zip(found.t, found.y.T):
         place, velocity = y[10:].reshape(2, count, 3)
@@ -378,14 +401,15 @@ def motion(scene, bearing):
             row[f"contact_force_on_{name}"] = vector(load_n @ normal, "N")
             row |= {f"ball_{i + 1}_{name}_load": value(number, "N") for i, number in enumerate(load_n)}
         rows.append(flat(row))
-    final = {key.split(" [")[0]: value(number, key.split("[")[1][:-1]) for key, number in rows[-1].items()}
-    return {"kind": "run", "complete": True, "final": final}, rows
+    inertia = {key: value(table["inertia"][key], unit) for key, unit in inertias.items()} | {"centre": value(0.0, "mm")}
+    return {"kind": "run", "end": value(numerics["end"], "s"), "time": value(times[-1], "s"),
+            "body_inertia": {"the inner race": inertia}}, rows
 
 
-def main(resolved, out):
-    scene, out = to_si(json.loads(Path(resolved).read_text())), Path(out)
-    claim(scene)
-    summary, rows = (motion if "numerics" in scene else statics)(scene, Bearing(scene))
+def main(kind, resolved, out):
+    scene, out = json.loads(Path(resolved).read_text()) if kind in ("statics", "run") else {}, Path(out)
+    claim(kind, scene)
+    summary, rows = (motion if kind == "run" else statics)(scene, Bearing(kind, scene))
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "series.csv", "w", newline="") as file:
         csv.writer(file).writerows([list(rows[0])] + [[float(number) for number in row.values()] for row in rows])
@@ -394,7 +418,7 @@ def main(resolved, out):
 
 if __name__ == "__main__":
     try:
-        main(*sys.argv[1:3])
+        main(*sys.argv[1:4])
     except Refused as reason:
         print(f"{reason} is not claimed", file=sys.stderr)
         sys.exit(3)
