@@ -283,8 +283,8 @@ This velocity is the orbital speed times the derivative of the equilibrium with 
 0, dt and 2 dt as (4 (f1 - f0) - (f2 - f0)) / (2 dt); balls pass 1 % of their pitch in dt, which is at most 0.1 ms. It is zero if these positions are not on one smooth curve.
 The start includes the weight of the races. `statics` of a single bearing with a fixed outer race leaves that weight out; all other equilibria include it.
 
-**Nominal positions.** With `start = "nominal"` the balls are on the pitch circle of the outer race at x = 0, with the orbital speed times the pitch radius along the orbit. Prescribed coordinates have
-their values at t = 0. Free coordinates of a race start at zero, at rest; the loads act at once.
+**Nominal positions.** With `start = \"nominal\"` the balls are on the pitch circle of the outer race at x = 0, with the orbital speed times the pitch radius along the orbit. Prescribed coordinates have
+their values at t = 0. Free coordinates start at their rest position, zero for an inner race alone, without velocity; the loads act at once.
 
 **Accuracy.** `accuracy` limits the estimated error of every moving body and ball: positions, and velocities over the frequency of the body on its contacts, relative to the largest approach so far. Each step may
 use 2 % of it. If the race is prescribed in all coordinates, the motion of the balls alone determines the step.
