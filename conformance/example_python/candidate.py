@@ -1,12 +1,11 @@
 """A ball bearing in equilibrium and in simple motion, from the documentation of bearing-dynamics.
 
-Usage: python candidate.py KIND RESOLVED_JSON OUT_FOLDER. Reads the resolved scene of a case pack (docs/guide/conformance.md),
-writes summary.json and series.csv. Equation numbers are those of the dissertation; axes, signs and symbols are those of
-docs/theory.md. Exit code 3: the pack needs something that this program does not claim. It leaves out the tags life,
-energy and statistics. Quantities are in SI units and radians.
+Usage: python candidate.py KIND RESOLVED_JSON OUT_FOLDER, as docs/guide/conformance.md describes. Equation numbers are
+those of the dissertation; axes, signs and symbols are those of docs/theory.md; quantities are in SI units and radians.
+Exit code 3: the pack needs something that this program does not claim. It leaves out the channels of the tags life,
+frequencies, energy and statistics.
 """
 
-import csv
 import json
 import sys
 from pathlib import Path
@@ -27,34 +26,31 @@ class Refused(Exception):
 def claim(kind, scene):
     """Refuses what this program does not compute."""
     bearing, inner, outer = (scene.get(key, {}) for key in ("bearing", "inner_race", "outer_race"))
+    profiles = "dent spall waviness" if kind == "statics" else ""
     known = {"": "title source defaults units assumptions bearing inner_race outer_race ball_forces traction "
                  "contact_damping ball_contact numerics output", "inner_race.": "x y z tilt_y tilt_z speed inertia",
-             "outer_race.": "x y z tilt_y tilt_z motion", "bearing.": "kind balls ball_phase hertz pitch_radius length "
-             "contact_angle clearance inner_race outer_race ball rating cage dent spall waviness"}
+             "outer_race.": "x y z tilt_y tilt_z", "bearing.": "kind balls ball_phase hertz pitch_radius length "
+             "contact_angle clearance inner_race outer_race ball rating cage " + profiles}
     neutral = (None, False, 0.0, {}, [], "inner_race", "outer_race", "fixed")
     refused = [prefix + key for (prefix, keys), table in zip(known.items(), (scene, inner, outer, bearing))
                for key, item in table.items() if key not in keys.split() and item not in neutral]
     constant = [inner.get("speed"), *outer.values(), *(v for key in COORDINATES for v in inner.get(key, {}).values())]
-    reasons = {f"kind {kind}": kind not in ("statics", "run"), "more than one bearing": "kind" not in bearing,
-               "outer_race.motion": outer.get("motion") not in neutral,
+    reasons = {f"kind {kind}": kind not in ("statics", "run"),
                "a profile over time": any(isinstance(item, dict) for item in constant)}
     if kind == "run":
         reasons |= {"traction": scene.get("traction", {}).get("law") != "none",
-                    "a moving cage": "mass" in bearing.get("cage", {}), "a deviation": "deviations" in bearing["ball"],
-                    "a profile of a raceway": any(bearing.get(key) for key in ("dent", "spall", "waviness"))}
+                    "a moving cage": "mass" in bearing.get("cage", {}),
+                    "a deviation": "deviations" in bearing.get("ball", {})}
     for name in refused + [name for name, true in reasons.items() if true]:
         raise Refused(name)
 
 
 def boundary(table):
     """Prescribed coordinates, loads, and which coordinates of the inner race are free."""
-    q, load, free = np.zeros(5), np.zeros(5), np.ones(5, bool)
-    for i, key in enumerate(COORDINATES):
-        entry = table.get(key, {})
-        load[i] = entry.get("load", entry.get("moment", 0.0))
-        q[i] = entry.get("displacement", entry.get("tilt", 0.0))
-        free[i] = not entry.keys() & {"displacement", "tilt"}
-    return q, load, free
+    entries = [table.get(key, {}) for key in COORDINATES]
+    q = np.array([entry.get("displacement", entry.get("tilt", 0.0)) for entry in entries])
+    load = np.array([entry.get("load", entry.get("moment", 0.0)) for entry in entries])
+    return q, load, np.array([not entry.keys() & {"displacement", "tilt"} for entry in entries])
 
 
 def sizes(table):
@@ -80,17 +76,12 @@ def sizes(table):
 def rotation(tilt_y, tilt_z):
     """R_y(xi) R_z(lambda): components of the race to those of the scene, transpose of (2.16)."""
     cy, sy, cz, sz = np.cos(tilt_y), np.sin(tilt_y), np.cos(tilt_z), np.sin(tilt_z)
-    rows = [[cy * cz, -cy * sz, sy], [sz, cz, 0.0 * cz], [-sy * cz, sy * sz, cy]]
-    return np.stack([np.stack(row, -1) for row in rows], -2)
-
-
-def cross(a, b):
-    return np.stack([a[..., i] * b[..., j] - a[..., j] * b[..., i] for i, j in ((1, 2), (2, 0), (0, 1))], -1)
+    return np.stack([np.stack(row, -1) for row in (
+        [cy * cz, -cy * sz, sy], [sz, cz, 0.0 * cz], [-sy * cz, sy * sz, cy])], -2)
 
 
 class Race:
     """A raceway as a torus, and its Hertz contact with a ball at the nominal geometry."""
-
     def __init__(self, groove_circle, materials, radius, cosine, sign, fit):
         self.axial, self.radial, groove = groove_circle
         self.groove, self.bottom = groove, self.radial - sign * groove      # radii of cross-section and groove bottom
@@ -118,16 +109,14 @@ class Race:
         length = np.sqrt(axial**2 + radial**2)
         normal = np.stack([axial, radial * local[..., 1] / distance, radial * local[..., 2] / distance], -1)
         normal = np.einsum("...ij,...j->...i", frame, normal / length[..., None])
-        approach = length - self.gap
-        overlap = np.where(approach.real > 0.0, approach, 0.0)
+        overlap = np.where((approach := length - self.gap).real > 0.0, approach, 0.0)
         angle = np.arctan2((axial * np.sign(radial.real)).real, abs(radial.real))
         return approach, normal, self.stiffness * overlap * np.sqrt(overlap), angle
 
     def ellipse(self, load):
         """Semi-axes and peak pressure."""
-        cube = 6.0 * self.ellipticity**2 * self.second * load / (np.pi * self.modulus * self.curvature)
-        major, minor = np.cbrt(cube), np.cbrt(cube) / self.ellipticity
-        return major, minor, 1.5 * load / (np.pi * np.where(load > 0.0, major * minor, 1.0))
+        major = np.cbrt(6.0 * self.ellipticity**2 * self.second * load / (np.pi * self.modulus * self.curvature))
+        return major, (minor := major / self.ellipticity), 1.5 * load / (np.pi * np.maximum(major * minor, 1e-300))
 
 
 class Bearing:
@@ -166,22 +155,21 @@ class Bearing:
         arm = place - u[..., :3]
         approach_i, normal_i, load_i, _ = self.inner.contact(rotation(u[..., 3], u[..., 4]), arm)
         approach_o, normal_o, load_o, _ = self.outer.contact(self.frame, place - self.centre)
-        weight = self.mass * self.gravity
-        energy = 0.4 * (load_i * approach_i + load_o * approach_o) - place @ weight - 0.5 * self.spin * u[..., 6]**2
+        weight, stored = self.mass * self.gravity, 0.4 * (load_i * approach_i + load_o * approach_o)
+        energy = stored - place @ weight - 0.5 * self.spin * u[..., 6]**2
         on_race = load_i[..., None] * normal_i
-        moment = cross(arm, on_race)
+        moment = np.cross(arm, on_race)
         about_z = moment[..., 0] * np.sin(u[..., 3]) + moment[..., 2] * np.cos(u[..., 3])   # tilted Z of the race
         on_ball = weight - on_race - load_o[..., None] * normal_o
-        radial = np.sum(on_ball * self.radial, -1) + self.spin * u[..., 6]
-        rest = np.stack([moment[..., 1], about_z, on_ball @ self.axis, radial], -1)
+        rest = np.stack([moment[..., 1], about_z, on_ball @ self.axis,
+                         np.sum(on_ball * self.radial, -1) + self.spin * u[..., 6]], -1)
         return energy.real, -np.concatenate([on_race, rest], -1)
 
     def derivatives(self, q, balls, columns):
         """Energy, gradient and Hessian by some columns of u (complex step: exact to rounding), a row a ball."""
         u = np.concatenate([np.tile(q, (self.count, 1)), balls], 1)
         steps = np.zeros((len(columns) + 1, 1, 7), complex)
-        for row, column in enumerate(columns):
-            steps[row + 1, 0, column] = 1e-30j
+        steps[range(1, len(columns) + 1), 0, columns] = 1e-30j
         energy, gradient = self.forces(u + steps)
         return energy[0], gradient[0].real, np.moveaxis(gradient[1:].imag, 0, -1) / 1e-30
 
@@ -193,8 +181,7 @@ class Bearing:
             approach, normal, _, _ = self.inner.contact(rotation(q[3], q[4]), self.positions(balls) - q[:3])
             away = np.stack([normal @ self.axis, np.sum(normal * self.radial, 1)], 1)
             line = balls - away * (approach + self.inner.gap)[:, None] - base
-            length = np.linalg.norm(line, axis=1, keepdims=True)
-            overlap = length - self.inner.gap - self.outer.gap
+            overlap = (length := np.linalg.norm(line, axis=1, keepdims=True)) - self.inner.gap - self.outer.gap
             balls = base + line / length * (self.outer.gap + overlap * np.where(overlap > 0.0, share, 0.5))
         for _ in range(60):
             _, gradient, hessian = self.derivatives(q, balls, (5, 6))
@@ -202,8 +189,7 @@ class Bearing:
             values = np.maximum(abs(values), 1e-10 * abs(values).max(1, keepdims=True) + 1e-300)
             step = -np.einsum("bij,bj,bkj,bk->bi", vectors, 1.0 / values, vectors, gradient[:, 5:])
             step *= np.minimum(1.0, 0.02 * self.ball / (np.linalg.norm(step, axis=1) + 1e-300))[:, None]
-            residual = np.linalg.norm(gradient[:, 5:], axis=1) / values.max(1)
-            step[residual < 2e-16 * self.pitch] = 0.0                       # as good as rounding allows
+            step[np.linalg.norm(gradient[:, 5:], axis=1) < 2e-16 * self.pitch * values.max(1)] = 0.0    # rounding
             if not step.any():
                 break
             balls = balls + step
@@ -282,8 +268,7 @@ def geometry(bearing):
 
 def statics(scene, bearing):
     """Summary and table of the equilibrium."""
-    table = scene.get("inner_race", {})
-    q, (_, loads, stiffness, balls) = bearing.equilibrium(table)
+    q, (_, loads, stiffness, balls) = bearing.equilibrium(scene.get("inner_race", {}))
     place, contacts, summed = bearing.positions(balls), {}, {}
     for name, race, frame, centre in (("inner", bearing.inner, rotation(q[3], q[4]), q[:3]),
                                       ("outer", bearing.outer, bearing.frame, bearing.centre)):
@@ -291,7 +276,7 @@ def statics(scene, bearing):
         force = load[:, None] * normal
         contacts[name] = (load, approach, angle / DEGREE, *race.ellipse(load), force)
         summed[name] = {"contact_force": vector(force.sum(0), "N"),
-                        "contact_moment": vector(cross(place - centre, force).sum(0), "N m")}
+                        "contact_moment": vector(np.cross(place - centre, force).sum(0), "N m")}
     cage = np.sum((contacts["inner"][-1] - bearing.mass * bearing.gravity) * bearing.along, 1)      # on the ball
     units = dict(load="N", approach="m", contact_angle="deg", semi_major="m", semi_minor="m", peak_pressure="Pa")
     listed = []
@@ -304,12 +289,9 @@ def statics(scene, bearing):
         listed.append(ball)
     largest = {name: data[0].max() for name, data in contacts.items()}
     loaded = {name: np.flatnonzero(data[0] > 0.01 * largest[name]) for name, data in contacts.items()}
-    where, gamma, count = loaded["inner"], bearing.gamma, bearing.count
+    where, count = loaded["inner"], bearing.count
     widest = np.diff(where, append=where[:1] + count).max(initial=0)        # from one loaded ball to the next
     extent = 360.0 if len(where) == count else 360.0 * (1.0 - widest / count) * bool(len(where))
-    less, more, spin = 0.5 * (1 - gamma), 0.5 * (1 + gamma), 0.5 * bearing.pitch / bearing.ball * (1 - gamma**2)
-    ratios = dict(cage=less, ball_pass_outer=count * less, ball_pass_inner=count * more, ball_spin=spin,
-                  twice_ball_spin=2 * spin)
     return {
         "kind": "static solution", "determinacy": {"kind": "determinate"},
         "inner_race": {"position": coordinates(q, "m", "deg", 1 / DEGREE), "loads": coordinates(loads, "N", "N m")}
@@ -321,9 +303,6 @@ def statics(scene, bearing):
         | {f"largest_{name}_load": value(load, "N") for name, load in largest.items()}
         | {"largest_pressure": value(max(data[5].max() for data in contacts.values()), "Pa")},
         "balls": listed,
-        "frequencies": {name: {"over_shaft": value(r, "1")}
-                        | ({"frequency": value(r * bearing.speed / (2 * np.pi), "Hz")} if "speed" in table else {})
-                        for name, r in ratios.items()},
         "hertz": {name: {"stiffness": value(r.stiffness, "N/m^1.5"), "ellipticity": value(r.ellipticity, "1")}
                   | {f"radius_{key}": value(1e3 * getattr(r, key), "mm") for key in ("rolling", "transverse")}
                   for name, r in (("inner_race", bearing.inner), ("outer_race", bearing.outer))},
@@ -338,20 +317,18 @@ def motion(scene, bearing):
     mass, axial, transverse = (table["inertia"][key] for key in inertias)
     alpha = damping["alpha"] if damping.get("law") == "hunt-crossley" else 0.0
     prescribed, load, free = boundary(table)
-
     def contacts(y):
         """Of each race: normal loads with damping, normals, arms cross normals, contact angles."""
-        place, velocity = y[10:].reshape(2, count, 3)
+        place, velocity = y[10:].reshape(2, count, 3) + [home, 0.0 * home]
         frame = rotation(y[3], y[4])
         omega = np.array([0.0, y[8], 0.0]) + y[9] * frame[:, 2]             # angular velocity without the spin
         for race, axes, arm, move, turn in (
                 (bearing.inner, frame, place - y[:3], velocity - y[5:8], omega),
                 (bearing.outer, bearing.frame, place - bearing.centre, velocity, 0.0 * omega)):
             _, normal, elastic, angle = race.contact(axes, arm)
-            lever = cross(arm, normal)
+            lever = np.cross(arm, normal)
             rate = np.sum(normal * move, 1) - lever @ turn
             yield elastic * np.maximum(1.0 + 1.5 * alpha * rate, 0.0), normal, lever, angle     # Hunt-Crossley
-
     def rates(_, y):
         (load_i, normal_i, lever, _), (load_o, normal_o, _, _) = contacts(y)
         moment = (load_i @ lever) @ rotation(y[3], y[4])
@@ -363,13 +340,11 @@ def motion(scene, bearing):
         race = np.concatenate([(load_i @ normal_i + load[:3]) / mass + bearing.gravity, [dw2, dw3]])
         balls = bearing.gravity - (load_i[:, None] * normal_i + load_o[:, None] * normal_o) / bearing.mass
         return np.concatenate([y[5:10], np.where(free, race, 0.0), y[10 + 3 * count:], balls.ravel()])
-
     def at_rest(phase):
         """Race and balls in equilibrium with ball 1 at this azimuth."""
         bearing.turn_balls(phase)
         q, state = bearing.equilibrium(table, mass * bearing.gravity)       # weight of the race
         return np.concatenate([q, state[3].ravel()])
-
     phase = scene["bearing"]["ball_phase"]
     start, speed = np.concatenate([prescribed, np.tile([0.0, bearing.pitch], count)]), np.zeros(5 + 2 * count)
     if numerics["start"] == "equilibrium":
@@ -381,19 +356,20 @@ def motion(scene, bearing):
     bearing.turn_balls(phase)
     balls, drift = start[5:].reshape(count, 2), speed[5:].reshape(count, 2)
     velocity = bearing.positions(drift) - bearing.centre + bearing.orbital * balls[:, 1:] * bearing.along
-    y = np.concatenate([start[:5], speed[:5], bearing.positions(balls).ravel(), velocity.ravel()])
+    home = bearing.positions(balls)                                         # the state has displacements from here
+    y = np.concatenate([start[:5], speed[:5], 0.0 * home.ravel(), velocity.ravel()])
     small = np.repeat([1e-14, 1e-12, 1e-9, 1e-7, 1e-14, 1e-9], [3, 2, 3, 2, 3 * count, 3 * count])
     times = np.arange(round(numerics["end"] / numerics["output_interval"]) + 1) * numerics["output_interval"]
     found = solve_ivp(rates, (0.0, times[-1]), y, "DOP853", times, rtol=1e-13, atol=small, max_step=1e-5)
     rows, turned = [], bearing.azimuth
     for time, y in zip(found.t, found.y.T):
-        place, velocity = y[10:].reshape(2, count, 3)
+        place, velocity = y[10:].reshape(2, count, 3) + [home, 0.0 * home]
         if np.min(np.linalg.norm(place - np.roll(place, 1, 0), axis=1)) < 2.0 * bearing.ball:
             raise Refused("contact between balls")
-        (_, p2, p3), (_, v2, v3) = ((place - bearing.centre) @ bearing.frame).T, (velocity @ bearing.frame).T
+        (_, p2, p3), (_, v2, v3) = (place - bearing.centre).T, velocity.T       # axes of the scene
         turned = turned + (np.arctan2(p3, p2) - turned + np.pi) % (2 * np.pi) - np.pi       # all turns
-        row = {"time": value(time, "s"), "inner": coordinates(y[:5], "m", "deg", 1 / DEGREE),
-               "inner_velocity": vector(y[5:8], "m/s"), "inner_speed": value(bearing.speed, "rad/s")}
+        row = dict(time=value(time, "s"), inner=coordinates(y[:5], "m", "deg", 1 / DEGREE),
+                   inner_velocity=vector(y[5:8], "m/s"), inner_speed=value(bearing.speed, "rad/s"))
         for i, orbit in enumerate((p2 * v3 - p3 * v2) / (p2**2 + p3**2)):
             row[f"ball_{i + 1}"] = {"angle": value(turned[i] / DEGREE, "deg"), "orbital_speed": value(orbit, "rad/s")}
         for name, (load_n, normal, _, angle) in zip(("inner", "outer"), contacts(y)):
@@ -411,8 +387,8 @@ def main(kind, resolved, out):
     claim(kind, scene)
     summary, rows = (motion if kind == "run" else statics)(scene, Bearing(kind, scene))
     out.mkdir(parents=True, exist_ok=True)
-    with open(out / "series.csv", "w", newline="") as file:
-        csv.writer(file).writerows([list(rows[0])] + [[float(number) for number in row.values()] for row in rows])
+    lines = [list(rows[0])] + [[str(float(number)) for number in row.values()] for row in rows]
+    (out / "series.csv").write_text("".join(",".join(line) + "\n" for line in lines))
     (out / "summary.json").write_text(json.dumps(summary, indent=2))
 
 
