@@ -1,11 +1,11 @@
 """A ball bearing in equilibrium and in simple motion, from the documentation of bearing-dynamics.
 
-Usage: python candidate.py RESOLVED_JSON OUT_FOLDER. Reads the resolved scene of a case pack, writes summary.json and
-series.csv. Equation numbers are those of the dissertation; axes, signs and symbols are those of docs/theory.md.
-Exit code 3: the scene needs something that this program does not claim. Quantities are in SI units and radians.
+Usage: python candidate.py KIND RESOLVED_JSON OUT_FOLDER, as docs/guide/conformance.md describes. Equation numbers are
+those of the dissertation; axes, signs and symbols are those of docs/theory.md; quantities are in SI units and radians.
+Exit code 3: the pack needs something that this program does not claim. It leaves out the channels of the tags life,
+frequencies, energy and statistics.
 """
 
-import csv
 import json
 import sys
 from pathlib import Path
@@ -17,81 +17,79 @@ from scipy.special import ellipe, ellipk
 
 COORDINATES = ("x", "y", "z", "tilt_y", "tilt_z")
 DEGREE = np.pi / 180.0
-UNITS = {"1": 1, "m": 1, "mm": 1e-3, "um": 1e-6, "kg": 1, "g": 1e-3, "N": 1, "kN": 1e3, "N m": 1, "rad": 1, "kg m^2": 1,
-         "deg": DEGREE, "rad/s": 1, "rpm": np.pi / 30, "Hz": 2 * np.pi, "Pa": 1, "MPa": 1e6, "GPa": 1e9, "kg/m^3": 1,
-         "m/s^2": 1, "s": 1, "ms": 1e-3, "us": 1e-6, "s/m": 1}
 
 
 class Refused(Exception):
     """The scene needs something that this program does not claim."""
 
 
-def to_si(node):
-    """The scene with every {"value", "unit"} replaced by its value in SI units."""
-    if isinstance(node, list):
-        return [to_si(item) for item in node]
-    if isinstance(node, dict) and set(node) == {"value", "unit"} and node["unit"] in UNITS:
-        return node["value"] * UNITS[node["unit"]]
-    return {key: to_si(item) for key, item in node.items()} if isinstance(node, dict) else node
-
-
-def claim(scene):
+def claim(kind, scene):
     """Refuses what this program does not compute."""
     bearing, inner, outer = (scene.get(key, {}) for key in ("bearing", "inner_race", "outer_race"))
-    known = {"": "title source defaults assumptions bearing inner_race outer_race ball_forces traction contact_damping "
-                 "ball_contact numerics output sweep", "inner_race.": "x y z tilt_y tilt_z speed inertia",
-             "outer_race.": "x y z tilt_y tilt_z motion"}
+    profiles = "dent spall waviness" if kind == "statics" else ""
+    known = {"": "title source defaults units assumptions bearing inner_race outer_race ball_forces traction "
+                 "contact_damping ball_contact numerics output", "inner_race.": "x y z tilt_y tilt_z speed inertia",
+             "outer_race.": "x y z tilt_y tilt_z", "bearing.": "kind balls ball_phase hertz pitch_radius length "
+             "contact_angle clearance inner_race outer_race ball rating cage " + profiles}
     neutral = (None, False, 0.0, {}, [], "inner_race", "outer_race", "fixed")
-    refused = [prefix + key for (prefix, keys), table in zip(known.items(), (scene, inner, outer))
+    refused = [prefix + key for (prefix, keys), table in zip(known.items(), (scene, inner, outer, bearing))
                for key, item in table.items() if key not in keys.split() and item not in neutral]
-    refused += [f"bearing.{key}" for key in ("inner_on", "outer_on", "inner_at", "outer_at", "reversed")
-                if bearing.get(key) not in neutral]
-    profiles = [inner.get("speed", 0.0)] + [v for key in COORDINATES for v in inner.get(key, {}).values()]
-    profiles += [outer.get(key) for key in COORDINATES]
-    reasons = {"more than one bearing": "kind" not in bearing, "outer_race.motion": outer.get("motion") not in neutral,
-               "a profile over time": any(isinstance(item, dict) for item in profiles)}
-    if "numerics" in scene:
-        reasons |= {"traction": scene.get("traction", {}).get("law") != "none", "no inertia": "inertia" not in inner,
-                    "a moving cage": "mass" in bearing.get("cage", {}), "a deviation": "deviations" in bearing["ball"],
-                    "a profile of a raceway": any(bearing.get(key) for key in ("dent", "spall", "waviness"))}
+    constant = [inner.get("speed"), *outer.values(), *(v for key in COORDINATES for v in inner.get(key, {}).values())]
+    reasons = {f"kind {kind}": kind not in ("statics", "run"),
+               "a profile over time": any(isinstance(item, dict) for item in constant)}
+    if kind == "run":
+        reasons |= {"traction": scene.get("traction", {}).get("law") != "none",
+                    "a moving cage": "mass" in bearing.get("cage", {}),
+                    "a deviation": "deviations" in bearing.get("ball", {})}
     for name in refused + [name for name, true in reasons.items() if true]:
         raise Refused(name)
 
 
 def boundary(table):
     """Prescribed coordinates, loads, and which coordinates of the inner race are free."""
-    q, load, free = np.zeros(5), np.zeros(5), np.ones(5, bool)
-    for i, key in enumerate(COORDINATES):
-        entry = table.get(key, {})
-        load[i] = entry.get("load", entry.get("moment", 0.0))
-        q[i] = entry.get("displacement", entry.get("tilt", 0.0))
-        free[i] = not entry.keys() & {"displacement", "tilt"}
-    return q, load, free
+    entries = [table.get(key, {}) for key in COORDINATES]
+    q = np.array([entry.get("displacement", entry.get("tilt", 0.0)) for entry in entries])
+    load = np.array([entry.get("load", entry.get("moment", 0.0)) for entry in entries])
+    return q, load, np.array([not entry.keys() & {"displacement", "tilt"} for entry in entries])
+
+
+def sizes(table):
+    """Sizes in use, with the clearance applied: section "Derived sizes" of docs/scene.md."""
+    ball, races = table["ball"], (table["inner_race"], table["outer_race"])
+    clearance, angle = table.get("clearance", {}), table.get("contact_angle", 0.0)
+    nominal = radius = ball["radius"] if "radius" in ball else 0.5 * ball["diameter"]
+    gap, through = clearance.get("radial", 0.5 * clearance.get("diametral", 0.0)), clearance.get("through", "ball")
+    grooves = np.array([race["groove_radius"] if "groove_radius" in race else 2 * nominal * race["conformity"]
+                        if "conformity" in race else nominal / race["osculation"] for race in races])
+    rooms, before = (grooves - nominal) * [1.0, -1.0], 0.0
+    axial, centres = rooms * np.sin(angle), table["pitch_radius"] + rooms * np.cos(angle)   # parts that just touch
+    if table["kind"] == "deep-groove":                                      # gap between the nominal parts
+        before = races[1]["radius"] - races[0]["radius"] - 2.0 * radius
+        gap, centres = gap if clearance else before, [race["radius"] for race in races] + grooves * [1.0, -1.0]
+    share = {"inner-race": (-1.0, 0.0), "outer-race": (0.0, 1.0), "races": (-0.5, 0.5), "ball": (0.0, 0.0)}[through]
+    centres = centres + np.array(share) * (gap - before)
+    if through == "ball" and clearance:
+        radius = 0.5 * (sum(grooves) - np.hypot(axial[0] - axial[1], centres[0] - centres[1] + gap))
+    return radius, nominal, gap, through, list(zip(axial, centres, grooves))
 
 
 def rotation(tilt_y, tilt_z):
     """R_y(xi) R_z(lambda): components of the race to those of the scene, transpose of (2.16)."""
     cy, sy, cz, sz = np.cos(tilt_y), np.sin(tilt_y), np.cos(tilt_z), np.sin(tilt_z)
-    rows = [[cy * cz, -cy * sz, sy], [sz, cz, 0.0 * cz], [-sy * cz, sy * sz, cy]]
-    return np.stack([np.stack(row, -1) for row in rows], -2)
-
-
-def cross(a, b):
-    return np.stack([a[..., i] * b[..., j] - a[..., j] * b[..., i] for i, j in ((1, 2), (2, 0), (0, 1))], -1)
+    return np.stack([np.stack(row, -1) for row in (
+        [cy * cz, -cy * sz, sy], [sz, cz, 0.0 * cz], [-sy * cz, sy * sz, cy])], -2)
 
 
 class Race:
     """A raceway as a torus, and its Hertz contact with a ball at the nominal geometry."""
-
-    def __init__(self, table, ball, radius, cosine, sign, fit):
-        self.axial, self.radial = table["groove_centre_axial"], table["groove_centre_radius"]
-        groove = table["groove_radius"]
+    def __init__(self, groove_circle, materials, radius, cosine, sign, fit):
+        self.axial, self.radial, groove = groove_circle
+        self.groove, self.bottom = groove, self.radial - sign * groove      # radii of cross-section and groove bottom
         self.gap = groove - radius                                          # groove centre to ball centre
         self.rolling = 1.0 / (1.0 / radius + sign / (self.radial / cosine - sign * groove))     # R_x
         self.transverse = 1.0 / (1.0 / radius - 1.0 / groove)                                   # R_y
         ratio, self.curvature = self.transverse / self.rolling, 1.0 / self.rolling + 1.0 / self.transverse
-        self.modulus = 2.0 / sum((1.0 - m["poisson_ratio"]**2) / m["youngs_modulus"]
-                                 for m in (ball["material"], table["material"]))                # E'
+        self.modulus = 2.0 / sum((1.0 - m["poisson_ratio"]**2) / m["youngs_modulus"] for m in materials)    # E'
         integrals = lambda k: (ellipk(1.0 - k**-2.0), ellipe(1.0 - k**-2.0))
         if fit:                                                             # Hamrock and Brewe
             self.ellipticity = 1.0339 * ratio**0.636
@@ -104,42 +102,38 @@ class Race:
             2.0 * self.second / (9.0 * self.curvature * first**3))
 
     def contact(self, frame, arm):
-        """Approach, normal, elastic load (2.1) and contact angle; `arm` runs from the race's centre to the ball's.
-
-        The normal runs from groove centre to ball: it is the direction of the force on the race.
-        """
+        """Approach, normal (from groove to ball centre: force on the race), elastic load (2.1), contact angle."""
         local = np.einsum("...ji,...j->...i", frame, arm)
         distance = np.sqrt(local[..., 1]**2 + local[..., 2]**2)
         axial, radial = local[..., 0] - self.axial, distance - self.radial
         length = np.sqrt(axial**2 + radial**2)
         normal = np.stack([axial, radial * local[..., 1] / distance, radial * local[..., 2] / distance], -1)
         normal = np.einsum("...ij,...j->...i", frame, normal / length[..., None])
-        approach = length - self.gap
-        overlap = np.where(approach.real > 0.0, approach, 0.0)
+        overlap = np.where((approach := length - self.gap).real > 0.0, approach, 0.0)
         angle = np.arctan2((axial * np.sign(radial.real)).real, abs(radial.real))
         return approach, normal, self.stiffness * overlap * np.sqrt(overlap), angle
 
     def ellipse(self, load):
         """Semi-axes and peak pressure."""
-        cube = 6.0 * self.ellipticity**2 * self.second * load / (np.pi * self.modulus * self.curvature)
-        major, minor = np.cbrt(cube), np.cbrt(cube) / self.ellipticity
-        return major, minor, 1.5 * load / (np.pi * np.where(load > 0.0, major * minor, 1.0))
+        major = np.cbrt(6.0 * self.ellipticity**2 * self.second * load / (np.pi * self.modulus * self.curvature))
+        return major, (minor := major / self.ellipticity), 1.5 * load / (np.pi * np.maximum(major * minor, 1e-300))
 
 
 class Bearing:
-    def __init__(self, scene):
+    def __init__(self, kind, scene):
         table, ball, forces = scene["bearing"], scene["bearing"]["ball"], scene.get("ball_forces", {})
-        self.count, self.ball, self.pitch = table["balls"], ball["radius"], table["pitch_radius"]
+        self.ball, self.nominal, self.clearance, self.through, circles = sizes(table)
+        self.count, self.pitch, self.angle = table["balls"], table["pitch_radius"], table.get("contact_angle", 0.0)
         self.mass = ball["material"]["density"] * 4.0 / 3.0 * np.pi * self.ball**3
         self.gravity = np.array(forces.get("gravity", [0.0, 0.0, 0.0]))
-        cosine = np.cos(table["contact_angle"])
+        cosine, fit = np.cos(self.angle), table["hertz"] == "hamrock-brewe"
         self.gamma = self.ball / self.pitch * cosine
-        self.inner, self.outer = (Race(table[name], ball, self.ball, cosine, sign, table["hertz"] == "hamrock-brewe")
-                                  for name, sign in (("inner_race", 1.0), ("outer_race", -1.0)))
+        self.inner, self.outer = (
+            Race(circle, (ball["material"], table[name]["material"]), self.ball, cosine, sign, fit)
+            for circle, name, sign in zip(circles, ("inner_race", "outer_race"), (1.0, -1.0)))
         self.speed = scene.get("inner_race", {}).get("speed", 0.0)
         self.orbital = 0.5 * (1.0 - self.gamma) * self.speed                # rolling without slip, nominal angle
-        # A run always has centrifugal forces.
-        self.spin = self.mass * self.orbital**2 if "numerics" in scene or forces.get("centrifugal") else 0.0
+        self.spin = self.mass * self.orbital**2 if kind == "run" or forces.get("centrifugal") else 0.0  # runs: always
         place = [scene.get("outer_race", {}).get(key, 0.0) for key in COORDINATES]
         self.centre, self.frame = np.array(place[:3]), rotation(place[3], place[4])   # of the outer race
         self.axis = self.frame[:, 0]
@@ -161,22 +155,21 @@ class Bearing:
         arm = place - u[..., :3]
         approach_i, normal_i, load_i, _ = self.inner.contact(rotation(u[..., 3], u[..., 4]), arm)
         approach_o, normal_o, load_o, _ = self.outer.contact(self.frame, place - self.centre)
-        weight = self.mass * self.gravity
-        energy = 0.4 * (load_i * approach_i + load_o * approach_o) - place @ weight - 0.5 * self.spin * u[..., 6]**2
+        weight, stored = self.mass * self.gravity, 0.4 * (load_i * approach_i + load_o * approach_o)
+        energy = stored - place @ weight - 0.5 * self.spin * u[..., 6]**2
         on_race = load_i[..., None] * normal_i
-        moment = cross(arm, on_race)
+        moment = np.cross(arm, on_race)
         about_z = moment[..., 0] * np.sin(u[..., 3]) + moment[..., 2] * np.cos(u[..., 3])   # tilted Z of the race
         on_ball = weight - on_race - load_o[..., None] * normal_o
-        radial = np.sum(on_ball * self.radial, -1) + self.spin * u[..., 6]
-        rest = np.stack([moment[..., 1], about_z, on_ball @ self.axis, radial], -1)
+        rest = np.stack([moment[..., 1], about_z, on_ball @ self.axis,
+                         np.sum(on_ball * self.radial, -1) + self.spin * u[..., 6]], -1)
         return energy.real, -np.concatenate([on_race, rest], -1)
 
     def derivatives(self, q, balls, columns):
         """Energy, gradient and Hessian by some columns of u (complex step: exact to rounding), a row a ball."""
         u = np.concatenate([np.tile(q, (self.count, 1)), balls], 1)
         steps = np.zeros((len(columns) + 1, 1, 7), complex)
-        for row, column in enumerate(columns):
-            steps[row + 1, 0, column] = 1e-30j
+        steps[range(1, len(columns) + 1), 0, columns] = 1e-30j
         energy, gradient = self.forces(u + steps)
         return energy[0], gradient[0].real, np.moveaxis(gradient[1:].imag, 0, -1) / 1e-30
 
@@ -188,8 +181,7 @@ class Bearing:
             approach, normal, _, _ = self.inner.contact(rotation(q[3], q[4]), self.positions(balls) - q[:3])
             away = np.stack([normal @ self.axis, np.sum(normal * self.radial, 1)], 1)
             line = balls - away * (approach + self.inner.gap)[:, None] - base
-            length = np.linalg.norm(line, axis=1, keepdims=True)
-            overlap = length - self.inner.gap - self.outer.gap
+            overlap = (length := np.linalg.norm(line, axis=1, keepdims=True)) - self.inner.gap - self.outer.gap
             balls = base + line / length * (self.outer.gap + overlap * np.where(overlap > 0.0, share, 0.5))
         for _ in range(60):
             _, gradient, hessian = self.derivatives(q, balls, (5, 6))
@@ -197,8 +189,7 @@ class Bearing:
             values = np.maximum(abs(values), 1e-10 * abs(values).max(1, keepdims=True) + 1e-300)
             step = -np.einsum("bij,bj,bkj,bk->bi", vectors, 1.0 / values, vectors, gradient[:, 5:])
             step *= np.minimum(1.0, 0.02 * self.ball / (np.linalg.norm(step, axis=1) + 1e-300))[:, None]
-            residual = np.linalg.norm(gradient[:, 5:], axis=1) / values.max(1)
-            step[residual < 2e-16 * self.pitch] = 0.0                       # as good as rounding allows
+            step[np.linalg.norm(gradient[:, 5:], axis=1) < 2e-16 * self.pitch * values.max(1)] = 0.0    # rounding
             if not step.any():
                 break
             balls = balls + step
@@ -262,6 +253,19 @@ def flat(node, name=""):
     return {k: v for key, item in node.items() for k, v in flat(item, f"{name}_{key}" if name else key).items()}
 
 
+def geometry(bearing):
+    """Sizes in use."""
+    def lengths(**named):
+        return {name: value(1e3 * length, "mm") for name, length in named.items()}
+    races = {f"{name}_race": {"conformity": value(0.5 * of.groove / bearing.nominal, "1"),
+                              "osculation": value(bearing.nominal / of.groove, "1")} | lengths(
+        radius=of.bottom, groove_radius=of.groove, groove_centre_radius=of.radial, groove_centre_axial=of.axial)
+        for name, of in (("inner", bearing.inner), ("outer", bearing.outer))}
+    return races | {"clearance_through": bearing.through, "contact_angle": value(bearing.angle / DEGREE, "deg"),
+                    "ball_mass": value(bearing.mass, "kg")} | lengths(
+        radial_clearance=bearing.clearance, pitch_radius=bearing.pitch, ball_radius=bearing.ball)
+
+
 def statics(scene, bearing):
     """Summary and table of the equilibrium."""
     q, (_, loads, stiffness, balls) = bearing.equilibrium(scene.get("inner_race", {}))
@@ -272,26 +276,22 @@ def statics(scene, bearing):
         force = load[:, None] * normal
         contacts[name] = (load, approach, angle / DEGREE, *race.ellipse(load), force)
         summed[name] = {"contact_force": vector(force.sum(0), "N"),
-                        "contact_moment": vector(cross(place - centre, force).sum(0), "N m")}
+                        "contact_moment": vector(np.cross(place - centre, force).sum(0), "N m")}
     cage = np.sum((contacts["inner"][-1] - bearing.mass * bearing.gravity) * bearing.along, 1)      # on the ball
-    names, listed = ("load", "approach", "contact_angle", "semi_major", "semi_minor", "peak_pressure"), []
-    units = ("N", "m", "deg", "m", "m", "Pa")
+    units = dict(load="N", approach="m", contact_angle="deg", semi_major="m", semi_minor="m", peak_pressure="Pa")
+    listed = []
     for i, azimuth in enumerate(bearing.azimuth):
         ball = {"ball": i + 1, "azimuth": value(azimuth / DEGREE % 360.0, "deg"), "position": vector(place[i], "m"),
                 "cage_force": value(cage[i], "N")}
         for name, data in contacts.items():
-            ball[name] = {key: value(column[i], unit) for column, key, unit in zip(data, names, units)}
+            ball[name] = {key: value(column[i], unit) for column, (key, unit) in zip(data, units.items())}
             ball[name]["force_on_race"] = vector(data[-1][i], "N")
         listed.append(ball)
     largest = {name: data[0].max() for name, data in contacts.items()}
     loaded = {name: np.flatnonzero(data[0] > 0.01 * largest[name]) for name, data in contacts.items()}
-    where, gamma, count = loaded["inner"], bearing.gamma, bearing.count
+    where, count = loaded["inner"], bearing.count
     widest = np.diff(where, append=where[:1] + count).max(initial=0)        # from one loaded ball to the next
     extent = 360.0 if len(where) == count else 360.0 * (1.0 - widest / count) * bool(len(where))
-    spin = 0.5 * bearing.pitch / bearing.ball * (1 - gamma**2)
-    ratios = {"cage": 0.5 * (1 - gamma), "ball_pass_outer": 0.5 * count * (1 - gamma),
-              "ball_pass_inner": 0.5 * count * (1 + gamma), "ball_spin": spin, "twice_ball_spin": 2 * spin}
-    turning = "speed" in scene.get("inner_race", {})
     return {
         "kind": "static solution", "determinacy": {"kind": "determinate"},
         "inner_race": {"position": coordinates(q, "m", "deg", 1 / DEGREE), "loads": coordinates(loads, "N", "N m")}
@@ -303,74 +303,73 @@ def statics(scene, bearing):
         | {f"largest_{name}_load": value(load, "N") for name, load in largest.items()}
         | {"largest_pressure": value(max(data[5].max() for data in contacts.values()), "Pa")},
         "balls": listed,
-        "frequencies": {name: {"over_shaft": value(r, "1")}
-                        | ({"frequency": value(r * bearing.speed / (2 * np.pi), "Hz")} if turning else {})
-                        for name, r in ratios.items()},
         "hertz": {name: {"stiffness": value(r.stiffness, "N/m^1.5"), "ellipticity": value(r.ellipticity, "1")}
                   | {f"radius_{key}": value(1e3 * getattr(r, key), "mm") for key in ("rolling", "transverse")}
                   for name, r in (("inner_race", bearing.inner), ("outer_race", bearing.outer))},
+        "geometry": geometry(bearing),
     }, [flat(entry) for entry in listed]
 
 
 def motion(scene, bearing):
     """Summary and table of a run without traction and cage: Newton's and Euler's laws (4.2.1.2)."""
-    numerics, table, count = scene["numerics"], scene["inner_race"], bearing.count
-    damping = scene.get("contact_damping", {})
-    mass, axial, transverse = (table["inertia"][key] for key in ("mass", "axial", "transverse"))
+    numerics, table, count, damping = scene["numerics"], scene["inner_race"], bearing.count, scene["contact_damping"]
+    inertias = dict(mass="kg", axial="kg m^2", transverse="kg m^2")
+    mass, axial, transverse = (table["inertia"][key] for key in inertias)
     alpha = damping["alpha"] if damping.get("law") == "hunt-crossley" else 0.0
     prescribed, load, free = boundary(table)
-
     def contacts(y):
         """Of each race: normal loads with damping, normals, arms cross normals, contact angles."""
-        place, velocity = y[10:].reshape(2, count, 3)
+        place, velocity = y[10:].reshape(2, count, 3) + [home, 0.0 * home]
         frame = rotation(y[3], y[4])
         omega = np.array([0.0, y[8], 0.0]) + y[9] * frame[:, 2]             # angular velocity without the spin
         for race, axes, arm, move, turn in (
                 (bearing.inner, frame, place - y[:3], velocity - y[5:8], omega),
                 (bearing.outer, bearing.frame, place - bearing.centre, velocity, 0.0 * omega)):
             _, normal, elastic, angle = race.contact(axes, arm)
-            lever = cross(arm, normal)
+            lever = np.cross(arm, normal)
             rate = np.sum(normal * move, 1) - lever @ turn
             yield elastic * np.maximum(1.0 + 1.5 * alpha * rate, 0.0), normal, lever, angle     # Hunt-Crossley
-
     def rates(_, y):
         (load_i, normal_i, lever, _), (load_o, normal_o, _, _) = contacts(y)
         moment = (load_i @ lever) @ rotation(y[3], y[4])
         # Euler's law in axes that tilt with the race and do not spin: w2, w3 about its Y and Z, f1 about its X.
         w2, w3, f1 = y[8] * np.cos(y[4]), y[9], y[8] * np.sin(y[4])
-        dw2 = (moment[1] + load[3] - w3 * axial * bearing.speed) / transverse + f1 * w3
+        dw2 = (moment[1] + load[3] / np.cos(y[4]) - w3 * axial * bearing.speed) / transverse + f1 * w3
         dw3 = (moment[2] + load[4] + w2 * axial * bearing.speed) / transverse - f1 * w2
         dw2 = (dw2 + f1 * w3) / np.cos(y[4])                                # second derivative of the first tilt
         race = np.concatenate([(load_i @ normal_i + load[:3]) / mass + bearing.gravity, [dw2, dw3]])
         balls = bearing.gravity - (load_i[:, None] * normal_i + load_o[:, None] * normal_o) / bearing.mass
         return np.concatenate([y[5:10], np.where(free, race, 0.0), y[10 + 3 * count:], balls.ravel()])
-
     def at_rest(phase):
         """Race and balls in equilibrium with ball 1 at this azimuth."""
         bearing.turn_balls(phase)
         q, state = bearing.equilibrium(table, mass * bearing.gravity)       # weight of the race
-        return np.concatenate([q, bearing.positions(state[3]).ravel()])
-
-    phase, step = scene["bearing"]["ball_phase"], 1e-4
-    if numerics.get("start", "equilibrium") == "equilibrium":               # it moves as the balls roll on
+        return np.concatenate([q, state[3].ravel()])
+    phase = scene["bearing"]["ball_phase"]
+    start, speed = np.concatenate([prescribed, np.tile([0.0, bearing.pitch], count)]), np.zeros(5 + 2 * count)
+    if numerics["start"] == "equilibrium":
         start = at_rest(phase)
-        speed = bearing.orbital * (at_rest(phase + step) - at_rest(phase - step)) / (2 * step)
-    else:
-        start = np.concatenate([prescribed, bearing.positions(np.tile([0.0, bearing.pitch], (count, 1))).ravel()])
-        speed = np.concatenate([np.zeros(5), (bearing.orbital * bearing.pitch * bearing.along).ravel()])
-    y = np.concatenate([start[:5], speed[:5], start[5:], speed[5:]])
-    small = np.repeat([1e-13, 1e-11, 1e-8, 1e-6, 1e-13, 1e-8], [3, 2, 3, 2, 3 * count, 3 * count])
+        step = min(0.02 * np.pi / count, 1e-4 * abs(bearing.orbital)) * np.sign(bearing.orbital)
+        if step:                                                            # it moves as the balls roll on
+            first, second = at_rest(phase + step) - start, at_rest(phase + 2.0 * step) - start
+            speed = bearing.orbital * (4.0 * first - second) / (2.0 * step)
+    bearing.turn_balls(phase)
+    balls, drift = start[5:].reshape(count, 2), speed[5:].reshape(count, 2)
+    velocity = bearing.positions(drift) - bearing.centre + bearing.orbital * balls[:, 1:] * bearing.along
+    home = bearing.positions(balls)                                         # the state has displacements from here
+    y = np.concatenate([start[:5], speed[:5], 0.0 * home.ravel(), velocity.ravel()])
+    small = np.repeat([1e-14, 1e-12, 1e-9, 1e-7, 1e-14, 1e-9], [3, 2, 3, 2, 3 * count, 3 * count])
     times = np.arange(round(numerics["end"] / numerics["output_interval"]) + 1) * numerics["output_interval"]
-    found = solve_ivp(rates, (0.0, times[-1]), y, "RK45", times, rtol=1e-10, atol=small, max_step=2e-6)
+    found = solve_ivp(rates, (0.0, times[-1]), y, "DOP853", times, rtol=1e-13, atol=small, max_step=1e-5)
     rows, turned = [], bearing.azimuth
     for time, y in zip(found.t, found.y.T):
-        place, velocity = y[10:].reshape(2, count, 3)
+        place, velocity = y[10:].reshape(2, count, 3) + [home, 0.0 * home]
         if np.min(np.linalg.norm(place - np.roll(place, 1, 0), axis=1)) < 2.0 * bearing.ball:
             raise Refused("contact between balls")
-        (_, p2, p3), (_, v2, v3) = ((place - bearing.centre) @ bearing.frame).T, (velocity @ bearing.frame).T
+        (_, p2, p3), (_, v2, v3) = (place - bearing.centre).T, velocity.T       # axes of the scene
         turned = turned + (np.arctan2(p3, p2) - turned + np.pi) % (2 * np.pi) - np.pi       # all turns
-        row = {"time": value(time, "s"), "inner": coordinates(y[:5], "m", "deg", 1 / DEGREE),
-               "inner_velocity": vector(y[5:8], "m/s"), "inner_speed": value(bearing.speed, "rad/s")}
+        row = dict(time=value(time, "s"), inner=coordinates(y[:5], "m", "deg", 1 / DEGREE),
+                   inner_velocity=vector(y[5:8], "m/s"), inner_speed=value(bearing.speed, "rad/s"))
         for i, orbit in enumerate((p2 * v3 - p3 * v2) / (p2**2 + p3**2)):
             row[f"ball_{i + 1}"] = {"angle": value(turned[i] / DEGREE, "deg"), "orbital_speed": value(orbit, "rad/s")}
         for name, (load_n, normal, _, angle) in zip(("inner", "outer"), contacts(y)):
@@ -378,23 +377,24 @@ def motion(scene, bearing):
             row[f"contact_force_on_{name}"] = vector(load_n @ normal, "N")
             row |= {f"ball_{i + 1}_{name}_load": value(number, "N") for i, number in enumerate(load_n)}
         rows.append(flat(row))
-    final = {key.split(" [")[0]: value(number, key.split("[")[1][:-1]) for key, number in rows[-1].items()}
-    return {"kind": "run", "complete": True, "final": final}, rows
+    inertia = {key: value(table["inertia"][key], unit) for key, unit in inertias.items()} | {"centre": value(0.0, "mm")}
+    return {"kind": "run", "end": value(numerics["end"], "s"), "time": value(times[-1], "s"),
+            "body_inertia": {"the inner race": inertia}}, rows
 
 
-def main(resolved, out):
-    scene, out = to_si(json.loads(Path(resolved).read_text())), Path(out)
-    claim(scene)
-    summary, rows = (motion if "numerics" in scene else statics)(scene, Bearing(scene))
+def main(kind, resolved, out):
+    scene, out = json.loads(Path(resolved).read_text()) if kind in ("statics", "run") else {}, Path(out)
+    claim(kind, scene)
+    summary, rows = (motion if kind == "run" else statics)(scene, Bearing(kind, scene))
     out.mkdir(parents=True, exist_ok=True)
-    with open(out / "series.csv", "w", newline="") as file:
-        csv.writer(file).writerows([list(rows[0])] + [[float(number) for number in row.values()] for row in rows])
+    lines = [list(rows[0])] + [[str(float(number)) for number in row.values()] for row in rows]
+    (out / "series.csv").write_text("".join(",".join(line) + "\n" for line in lines))
     (out / "summary.json").write_text(json.dumps(summary, indent=2))
 
 
 if __name__ == "__main__":
     try:
-        main(*sys.argv[1:3])
+        main(*sys.argv[1:4])
     except Refused as reason:
         print(f"{reason} is not claimed", file=sys.stderr)
         sys.exit(3)

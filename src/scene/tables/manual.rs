@@ -279,6 +279,15 @@ without a support is refused. Rotating forces act in their direction at t = 0: t
 unbalance along the inner race's own Y, with the speed at t = 0. (Their mean over a revolution is zero, and a run that started from it would start
 with an impact.) If the inner race's speed is prescribed and not zero at t = 0, all parts start with the velocity at which their
 equilibrium moves: balls roll without slip on the pitch circle, and traction, if any, keeps them in their orbit.
+This velocity is the orbital speed times the derivative of the equilibrium with respect to the ball phase, plus the change of loads. It follows from equilibria f0, f1 and f2 at
+0, dt and 2 dt as (4 (f1 - f0) - (f2 - f0)) / (2 dt); balls pass 1 % of their pitch in dt, which is at most 0.1 ms. It is zero if these positions are not on one smooth curve.
+The start includes the weight of the races. `statics` of a single bearing with a fixed outer race leaves that weight out; all other equilibria include it.
+
+**Nominal positions.** With `start = \"nominal\"` the balls are on the pitch circle of the outer race at x = 0, with the orbital speed times the pitch radius along the orbit. Prescribed coordinates have
+their values at t = 0. Free coordinates start at their rest position, zero for an inner race alone, without velocity; the loads act at once.
+
+**Accuracy.** `accuracy` limits the estimated error of every moving body and ball: positions, and velocities over the frequency of the body on its contacts, relative to the largest approach so far. Each step may
+use 2 % of it. If the race is prescribed in all coordinates, the motion of the balls alone determines the step.
 
 **Traction.** `b` and `c` are plain numbers with `slide-to-roll`, in s/m with `slip-speed`. Both curves are (b x - d) exp(-c x) + d, zero at rest; no curve may exceed 2.
 
