@@ -175,7 +175,7 @@ fn a_wrong_number_is_found_and_named() {
         "/stiffness/tilt_z/y/value",
         "/balls/0/inner/load/value",
         "/balls/3/outer/peak_pressure/value",
-        "/rating_life/life/value",
+        "/rating_life/revolutions/value",
         "/frequencies/cage/over_shaft/value",
     ] {
         in_summary("tilted", path, &|value, wrong| value + wrong);
