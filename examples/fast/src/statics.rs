@@ -499,7 +499,17 @@ pub fn solve_lanes(common: &Common, problems: &[Problem]) -> Vec<Equilibrium> {
     for (group, four) in problems.chunks(4).enumerate() {
         let start = first.map(|value| f64x4::from_lanes(|lane| value.lane((4 * group + lane).min(7))));
         let start = std::array::from_fn(|i| if common.free[i] { start[i] } else { spread(four, |p| p.start[i]) });
-        found.extend(finish(common, four, start));
+        let mut equilibria = finish(common, four, start);
+        if equilibria.iter().any(|one| !one.determinate) {
+            // A saddle between two mirrored equilibria: start again beside it.
+            let beside: [f64x4; 5] = std::array::from_fn(|i| {
+                let place = |lane: usize| &equilibria[lane.min(four.len() - 1)];
+                let aside = if common.free[i] { if i < 3 { -1e-5 * four[0].pitch } else { 1e-5 } } else { 0.0 };
+                f64x4::from_lanes(|lane| place(lane).position[i] + if place(lane).determinate { 0.0 } else { aside })
+            });
+            equilibria = finish(common, four, beside);
+        }
+        found.extend(equilibria);
     }
     found
 }
@@ -516,7 +526,7 @@ fn finish(common: &Common, problems: &[Problem], start: [f64x4; 5]) -> Vec<Equil
     let (mut energy, mut places) = (R::splat(1e300), base_balls.clone());
     let mut system = System { energy, gradient: [zero; 5], stiffness: [[zero; 5]; 5], balls: Vec::with_capacity(count) };
     let (cap, ball_cap) = (l.pitch * R::splat(2e-3), l.pitch * R::splat(5e-4));
-    let enough = R::splat(3e-11) * l.pitch;
+    let enough = R::splat(1e-12) * l.pitch;
     let (mut at, mut left, mut sound) = (base, zero, zero);
     for _ in 0..100 {
         for i in 0..5 {
