@@ -1,9 +1,18 @@
 //! Many points of one scene: a grid over some keys, a row of a table for each point.
 
+use crate::motion::{self, tables};
 use crate::scene::{COORDINATES, Hertz, Outcome, Scene, Stop, read, si};
 use crate::statics::{Common, Equilibrium, Problem, solve_lanes};
 use rayon::prelude::*;
 use serde_json::Value;
+
+/// Tolerance of equilibria, see [`Common`].
+const TOLERANCE: f64 = 1e-12;
+
+/// Step of a run without a given one, as a fraction of 1 rad of its fastest oscillation.
+const FRACTION: f64 = 0.1;
+
+const STATISTICS: [&str; 4] = ["mean", "rms", "smallest", "largest"];
 
 /// Keys and their values in SI units; the last key varies fastest.
 struct Grid {
@@ -77,43 +86,91 @@ pub fn append(row: &mut Vec<u8>, values: impl IntoIterator<Item = f64>) {
 ///
 /// An unclaimed feature, or a batch file that cannot be read.
 pub fn solve(batch: &Value) -> Outcome<Vec<u8>> {
-    let scene = read(&batch["scene"])?;
+    let kind = batch["of"].as_str().unwrap_or("statics");
+    let scene = read(&batch["scene"], kind)?;
     let grid = Grid::read(&batch["vary"])?;
+    let common = Common::new(&scene, TOLERANCE);
     let every_ball = batch["balls"] == Value::Bool(true);
-    let mut table: Vec<String> = vec!["point [1]".into()];
-    table.extend(grid.keys.iter().map(|(key, _)| key.clone()));
-    let units = ["m", "m", "m", "rad", "rad"];
-    table.extend((0..5).map(|i| format!("{} [{}]", COORDINATES[i], units[i])));
-    let loads = ["load_x [N]", "load_y [N]", "load_z [N]", "moment_y [N m]", "moment_z [N m]"];
-    table.extend(loads.map(String::from));
-    let top = ["N/m", "N/m", "N/m", "N m/rad", "N m/rad"];
-    table.extend((0..5).map(|i| format!("stiffness_{} [{}]", COORDINATES[i], top[i])));
-    let rest = ["loaded_balls [1]", "largest_inner_load [N]", "largest_outer_load [N]", "largest_inner_pressure [Pa]",
-        "largest_outer_pressure [Pa]"];
-    table.extend(rest.map(String::from));
-    for ball in (1..=scene.count).filter(|_| every_ball) {
-        table.extend(["inner", "outer"].map(|race| format!("ball_{ball}_{race}_load [N]")));
-    }
-    table.push("status [1]\n".into());
-    let common = Common::new(&scene);
-    let rows: Vec<Vec<u8>> = (0..grid.points.div_ceil(8))
-        .into_par_iter()
-        .map(|group| {
-            let points: Vec<usize> = (8 * group..(8 * group + 8).min(grid.points)).collect();
-            let scenes = points.iter().map(|point| grid.scene(&scene, *point)).collect::<Outcome<Vec<_>>>()?;
+    let mut columns: Vec<String> = vec!["point [1]".into()];
+    columns.extend(grid.keys.iter().map(|(key, _)| key.clone()));
+    let lanes = if scene.run.is_some() {
+        columns.extend(statistics(scene.count));
+        4
+    } else {
+        columns.extend(equilibrium_columns(scene.count, every_ball));
+        8
+    };
+    let groups: Vec<usize> = (0..grid.points).step_by(lanes).collect();
+    let rows = groups.into_par_iter().map(|first| {
+        let points = first..(first + lanes).min(grid.points);
+        let scenes = points.clone().map(|point| grid.scene(&scene, point)).collect::<Outcome<Vec<_>>>()?;
+        let mut rows = Vec::with_capacity(points.len() * 20 * columns.len());
+        let start = |rows: &mut Vec<u8>, i: usize| {
+            append(rows, [(first + i) as f64]);
+            append(rows, scenes[i].1.iter().copied());
+        };
+        if scene.run.is_some() {
+            let scenes: Vec<Scene> = scenes.iter().map(|(scene, _)| *scene).collect();
+            for (i, table) in tables(&scenes, &common, FRACTION)?.iter().enumerate() {
+                start(&mut rows, i);
+                run_row(&mut rows, &scenes[i], table);
+            }
+        } else {
             let problems: Vec<Problem> = scenes.iter().map(|(scene, _)| Problem::new(scene, &common)).collect();
-            let mut rows = Vec::with_capacity(points.len() * 24 * table.len());
             for (i, found) in solve_lanes(&common, &problems).iter().enumerate() {
-                append(&mut rows, [points[i] as f64]);
-                append(&mut rows, scenes[i].1.iter().copied());
+                start(&mut rows, i);
                 row(&mut rows, found, &problems[i], every_ball);
             }
-            Ok(rows)
-        })
-        .collect::<Outcome<Vec<Vec<u8>>>>()?;
-    let mut text = table.join(",").into_bytes();
+        }
+        Ok(rows)
+    });
+    let rows = rows.collect::<Outcome<Vec<Vec<u8>>>>()?;
+    let mut text = columns.join(",").into_bytes();
+    text.push(b'\n');
     rows.iter().for_each(|row| text.extend_from_slice(row));
     Ok(text)
+}
+
+/// Columns of an equilibrium after the varied keys.
+fn equilibrium_columns(count: usize, every_ball: bool) -> Vec<String> {
+    let units = [["m"; 3].as_slice(), &["rad"; 2]].concat();
+    let top = [["N/m"; 3].as_slice(), &["N m/rad"; 2]].concat();
+    let loads = ["load_x [N]", "load_y [N]", "load_z [N]", "moment_y [N m]", "moment_z [N m]"];
+    let mut columns: Vec<String> = (0..5).map(|i| format!("{} [{}]", COORDINATES[i], units[i])).collect();
+    columns.extend(loads.map(String::from));
+    columns.extend((0..5).map(|i| format!("stiffness_{} [{}]", COORDINATES[i], top[i])));
+    columns.push("loaded_balls [1]".into());
+    columns.extend(["inner", "outer"].map(|race| format!("largest_{race}_load [N]")));
+    columns.extend(["inner", "outer"].map(|race| format!("largest_{race}_pressure [Pa]")));
+    for ball in (1..=count).filter(|_| every_ball) {
+        columns.extend(["inner", "outer"].map(|race| format!("ball_{ball}_{race}_load [N]")));
+    }
+    columns.push("status [1]".into());
+    columns
+}
+
+/// Columns of a run: four statistics of each channel.
+fn statistics(count: usize) -> Vec<String> {
+    let channels = motion::columns(count).into_iter().skip(1);
+    let four = |(name, unit): (String, &str)| STATISTICS.map(|kind| format!("{name}_{kind} [{unit}]"));
+    channels.flat_map(four).collect()
+}
+
+/// Mean, RMS about the mean, smallest and largest value of each channel from `output.window_start` on.
+fn run_row(rows: &mut Vec<u8>, scene: &Scene, table: &[Vec<f64>]) {
+    let from = scene.run.map_or(0.0, |run| run.window_start - 1e-9 * run.interval);
+    let first = table.iter().position(|row| row[0] >= from).unwrap_or(0);
+    let window = &table[first..];
+    let count = window.len() as f64;
+    for channel in 1..window[0].len() {
+        let values = || window.iter().map(|row| row[channel]);
+        let mean = values().sum::<f64>() / count;
+        let rms = (values().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let extremes = values().fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)]);
+        append(rows, [mean, rms, extremes[0], extremes[1]]);
+    }
+    rows.pop();
+    rows.push(b'\n');
 }
 
 /// Largest load on each race.

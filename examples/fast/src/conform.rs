@@ -1,8 +1,8 @@
 //! Results of one scene in the form of a case pack: `summary.json` and `series.csv`.
 
 use crate::batch::{append, ellipse, largest};
-use crate::motion::{columns, positions, tables};
-use crate::scene::{COORDINATES, Outcome, Scene, Stop};
+use crate::motion::{columns, positions, run_of, tables};
+use crate::scene::{COORDINATES, Outcome, Race, Scene, Stop, Through};
 use crate::statics::{Common, Problem, axes, solve_lanes};
 use serde_json::{Map, Value, json};
 
@@ -10,6 +10,9 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 /// Step of a run as a fraction of 1 rad of its fastest oscillation.
 const FRACTION: f64 = 0.02;
+
+/// Tolerance of equilibria, see [`Common`].
+const TOLERANCE: f64 = 1e-14;
 
 fn quantity(value: f64, unit: &str) -> Value {
     json!({"value": value, "unit": unit})
@@ -74,7 +77,7 @@ pub fn solve(scene: &Scene) -> Outcome<(Value, Vec<u8>)> {
 }
 
 fn run(scene: &Scene) -> Outcome<(Value, Vec<u8>)> {
-    let mut rows = tables(&[*scene], &Common::new(scene), FRACTION)?.remove(0);
+    let mut rows = tables(&[*scene], &Common::new(scene, TOLERANCE), FRACTION)?.remove(0);
     let columns = columns(scene.count);
     let degrees = |unit: &str| if unit == "rad" { ("deg", DEGREES) } else { ("", 1.0) };
     for row in &mut rows {
@@ -84,13 +87,22 @@ fn run(scene: &Scene) -> Outcome<(Value, Vec<u8>)> {
     }
     let unit = |unit: &'static str| if unit == "rad" { "deg" } else { unit };
     let names: Vec<String> = columns.iter().map(|(name, of)| format!("{name} [{}]", unit(of))).collect();
-    let last = rows.last().into_iter().flatten();
-    let end: Map<_, _> = columns.iter().zip(last).map(|((name, of), value)| (name.clone(), quantity(*value, unit(of)))).collect();
-    Ok((json!({"kind": "run", "complete": true, "final": end}), table(&names, &rows)))
+    let run = run_of(scene)?;
+    let [mass, axial, transverse] = run.inertia;
+    let inertia = json!({
+        "mass": quantity(mass, "kg"), "axial": quantity(axial, "kg m^2"), "transverse": quantity(transverse, "kg m^2"),
+        "centre": quantity(0.0, "mm"),
+    });
+    let time = rows.last().map_or(0.0, |row| row[0]);
+    let summary = json!({
+        "kind": "run", "end": quantity(run.end, "s"), "time": quantity(time, "s"),
+        "body_inertia": {"the inner race": inertia},
+    });
+    Ok((summary, table(&names, &rows)))
 }
 
 fn statics(scene: &Scene) -> Outcome<(Value, Vec<u8>)> {
-    let common = Common::new(scene);
+    let common = Common::new(scene, TOLERANCE);
     let problem = Problem::new(scene, &common);
     let found = solve_lanes(&common, &[problem]).remove(0);
     if !found.converged || !found.determinate {
@@ -190,8 +202,30 @@ fn statics(scene: &Scene) -> Outcome<(Value, Vec<u8>)> {
             "radius_transverse": quantity(contact.transverse * 1e3, "mm"),
         })
     };
+    let length = |value: f64| quantity(value * 1e3, "mm");
+    let sizes = |race: &Race, side: f64| {
+        json!({
+            "radius": length(race.radial - side * race.groove), "groove_radius": length(race.groove),
+            "groove_centre_radius": length(race.radial), "groove_centre_axial": length(race.axial),
+            "conformity": quantity(0.5 * race.groove / scene.nominal, "1"),
+            "osculation": quantity(scene.nominal / race.groove, "1"),
+        })
+    };
+    let through = match scene.through {
+        Through::Ball => "ball",
+        Through::Inner => "inner-race",
+        Through::Outer => "outer-race",
+        Through::Races => "races",
+    };
+    let geometry = json!({
+        "radial_clearance": length(scene.clearance), "pitch_radius": length(scene.pitch),
+        "ball_radius": length(scene.ball_radius), "clearance_through": through,
+        "contact_angle": quantity(scene.contact_angle * DEGREES, "deg"), "ball_mass": quantity(scene.ball_mass, "kg"),
+        "inner_race": sizes(&scene.inner, 1.0), "outer_race": sizes(&scene.outer, -1.0),
+    });
     let summary = json!({
         "kind": "static solution",
+        "geometry": geometry,
         "determinacy": {"kind": "determinate"},
         "inner_race": {
             "position": five(q, "m", "deg", DEGREES), "loads": five(found.loads, "N", "N m", 1.0),

@@ -28,8 +28,8 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["batch", input, out] => load(input).and_then(|input| save(Path::new(out), &batch::solve(&input)?)),
-        ["statics" | "run", resolved, out] => load(resolved).and_then(|resolved| {
-            let (summary, series) = conform::solve(&scene::read(&resolved)?)?;
+        [kind, resolved, out] => load(resolved).and_then(|resolved| {
+            let (summary, series) = conform::solve(&scene::read(&resolved, kind)?)?;
             let out = Path::new(out);
             std::fs::create_dir_all(out).map_err(|error| Stop::Error(format!("{}: {error}", out.display())))?;
             save(&out.join("series.csv"), &series)?;

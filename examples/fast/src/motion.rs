@@ -71,21 +71,18 @@ pub fn run_of(scene: &Scene) -> Outcome<Run> {
     scene.run.ok_or_else(|| Stop::Unclaimed("a scene without numerics as a run".into()))
 }
 
-/// Equilibria at the ball phases that are moved on by `phase`, under the weight of the race too.
-fn rest(scenes: &[Scene], common: &Common, phase: f64) -> Vec<(Equilibrium, [f64; 2])> {
-    let problems: Vec<Problem> = scenes
-        .iter()
-        .map(|scene| {
-            let mut moved = *scene;
-            moved.phase += phase;
-            let mass = scene.run.map_or(0.0, |run| run.inertia[0]);
-            for i in (0..3).filter(|i| scene.free[*i]) {
-                moved.condition[i] += mass * scene.gravity[i];
-            }
-            Problem::new(&moved, common)
-        })
-        .collect();
-    solve_lanes(common, &problems).into_iter().zip(problems.iter().map(|problem| problem.phase)).collect()
+/// Equilibria with the balls moved on by `phase` of each scene, under the weight of the race too.
+fn rest(scenes: &[Scene], common: &Common, phase: impl Fn(&Scene) -> f64) -> Vec<Equilibrium> {
+    let problem = |scene: &Scene| {
+        let mut moved = *scene;
+        moved.phase += phase(scene);
+        let mass = scene.run.map_or(0.0, |run| run.inertia[0]);
+        for i in (0..3).filter(|i| scene.free[*i]) {
+            moved.condition[i] += mass * scene.gravity[i];
+        }
+        Problem::new(&moved, common)
+    };
+    solve_lanes(common, &scenes.iter().map(problem).collect::<Vec<_>>())
 }
 
 /// Ball centres in the scene.
@@ -106,14 +103,19 @@ impl<'a> Runs<'a> {
     /// An equilibrium at the start that is not found.
     pub fn new(scenes: &[Scene], common: &'a Common, fraction: f64) -> Outcome<(Self, State)> {
         let run = run_of(&scenes[0])?;
-        let here = rest(scenes, common, 0.0);
-        let (ahead, behind) = (rest(scenes, common, 1e-4), rest(scenes, common, -1e-4));
+        let here = rest(scenes, common, |_| 0.0);
+        // The parts start with the velocity at which their equilibrium moves as the balls roll on.
+        let ahead = |scene: &Scene| {
+            let orbital = scene.orbital();
+            (0.02 * std::f64::consts::PI / scene.count as f64).min(1e-4 * orbital.abs()).copysign(orbital)
+        };
+        let (first, second) = (rest(scenes, common, ahead), rest(scenes, common, |scene| 2.0 * ahead(scene)));
         let hertz: Vec<_> = scenes.iter().map(Scene::hertz).collect();
-        if run.from_equilibrium && here.iter().any(|(one, _)| !one.converged || !one.determinate) {
+        if run.from_equilibrium && here.iter().any(|one| !one.converged || !one.determinate) {
             return Err(Stop::Unclaimed("a start without a determinate equilibrium".into()));
         }
         // The fastest oscillation is that of a ball between its two contacts under twice the largest load.
-        let fastest = |(scene, (one, _)): (&Scene, &(Equilibrium, [f64; 2]))| {
+        let fastest = |(scene, one): (&Scene, &Equilibrium)| {
             let load = one.ball_loads.iter().flatten().copied().fold(10.0, f64::max) * 2.0;
             let stiffness = scene.hertz().map(|hertz| 1.5 * hertz.stiffness.powf(2.0 / 3.0) * load.cbrt());
             ((stiffness[0] + stiffness[1]) / scene.ball_mass).sqrt()
@@ -122,32 +124,36 @@ impl<'a> Runs<'a> {
         let steps = (run.interval / run.step.unwrap_or(fraction / fastest)).ceil() as usize;
         let start: Vec<_> = (0..scenes.len())
             .map(|i| {
-                let (scene, place) = (&scenes[i], |one: &(Equilibrium, [f64; 2])| {
-                    positions(common, &one.0.balls, scenes[i].pitch, one.1)
-                });
-                let orbital = scene.orbital();
-                if run.from_equilibrium {
-                    let rate = |ahead: f64, behind: f64| orbital * (ahead - behind) / 2e-4;
-                    let (front, back) = (place(&ahead[i]), place(&behind[i]));
-                    let speed: [f64; 5] =
-                        std::array::from_fn(|k| rate(ahead[i].0.position[k], behind[i].0.position[k]));
-                    let balls = front.iter().zip(&back).map(|(a, b)| [0, 1, 2].map(|k| rate(a[k], b[k])));
-                    (here[i].0.position, speed, place(&here[i]), balls.collect::<Vec<_>>())
-                } else {
-                    let nominal = vec![[0.0; 2]; scene.count];
-                    let at = positions(common, &nominal, scene.pitch, here[i].1);
-                    let axis = common.frame[0];
-                    let speed = at.iter().map(|p| {
-                        let arm = [0, 1, 2].map(|k| p[k] - common.centre[k]);
-                        [
-                            orbital * (axis[1] * arm[2] - axis[2] * arm[1]),
-                            orbital * (axis[2] * arm[0] - axis[0] * arm[2]),
-                            orbital * (axis[0] * arm[1] - axis[1] * arm[0]),
-                        ]
-                    });
-                    let q = std::array::from_fn(|k| if scene.free[k] { 0.0 } else { scene.condition[k] });
-                    (q, [0.0; 5], at.clone(), speed.collect())
-                }
+                let (scene, orbital, step) = (&scenes[i], scenes[i].orbital(), ahead(&scenes[i]));
+                let moving = run.from_equilibrium && step != 0.0;
+                let rate = |here: f64, first: f64, second: f64| {
+                    if moving { orbital * (4.0 * (first - here) - (second - here)) / (2.0 * step) } else { 0.0 }
+                };
+                let nominal = vec![[0.0; 2]; scene.count];
+                let balls = if run.from_equilibrium { &here[i].balls } else { &nominal };
+                let (sin, cos) = scene.phase.sin_cos();
+                let places = positions(common, balls, scene.pitch, [cos, sin]);
+                let drifts: Vec<[f64; 2]> = (0..scene.count)
+                    .map(|k| [0, 1].map(|j| rate(here[i].balls[k][j], first[i].balls[k][j], second[i].balls[k][j])))
+                    .collect();
+                let drifts = positions(common, &drifts, 0.0, [cos, sin]);
+                let axis = common.frame[0];
+                let speeds: Vec<[f64; 3]> = places
+                    .iter()
+                    .zip(&drifts)
+                    .map(|(place, drift)| {
+                        let arm = [0, 1, 2].map(|k| place[k] - common.centre[k]);
+                        [0, 1, 2].map(|k| {
+                            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                            drift[k] - common.centre[k] + orbital * (axis[a] * arm[b] - axis[b] * arm[a])
+                        })
+                    })
+                    .collect();
+                let prescribed = std::array::from_fn(|k| if scene.free[k] { 0.0 } else { scene.condition[k] });
+                let q: [f64; 5] = if run.from_equilibrium { here[i].position } else { prescribed };
+                let v: [f64; 5] =
+                    std::array::from_fn(|k| rate(here[i].position[k], first[i].position[k], second[i].position[k]));
+                (q, v, places, speeds)
             })
             .collect();
         let five = |value: &dyn Fn(&Scene, usize) -> f64| [0, 1, 2, 3, 4].map(|i| lanes(scenes, |scene| value(scene, i)));
@@ -236,7 +242,7 @@ impl<'a> Runs<'a> {
         // Euler's law in axes that tilt with the race and do not spin.
         let (w2, w3, f1) = (v[3] * cos, v[4], v[3] * sin);
         let momentum = axial * self.spin;
-        let dw2 = (dot(moment, pose.frame[1]) + self.load[3] - w3 * momentum) / transverse + f1 * w3;
+        let dw2 = (dot(moment, pose.frame[1]) + self.load[3] / cos - w3 * momentum) / transverse + f1 * w3;
         let dw3 = (dot(moment, pose.frame[2]) + self.load[4] + w2 * momentum) / transverse - f1 * w2;
         let straight = [0, 1, 2].map(|i| (force[i] + self.load[i]) / mass + gravity[i]);
         let all = [straight[0], straight[1], straight[2], (dw2 + f1 * w3) / cos, dw3];

@@ -56,6 +56,8 @@ pub struct Scene {
     /// Azimuth of ball 1, rad.
     pub phase: f64,
     pub ball_radius: f64,
+    /// Ball radius before the clearance is applied, m.
+    pub nominal: f64,
     pub ball_mass: f64,
     pub density: f64,
     pub ball_material: [f64; 2],
@@ -136,10 +138,25 @@ impl<'a> Reader<'a> {
     fn word(&self, path: &str) -> &'a str {
         self.get(path).as_str().unwrap_or("")
     }
-    fn race(&self, name: &str) -> Outcome<Race> {
+    /// A raceway before the clearance is applied, as if the balls had their nominal radius; `side` is +1 for the inner race.
+    fn race(&self, name: &str, side: f64, nominal: f64) -> Outcome<Race> {
         let at = |key: &str| self.number(&format!("bearing.{name}.{key}"));
-        let material = [at("material.youngs_modulus")?, at("material.poisson_ratio")?];
-        Ok(Race { axial: at("groove_centre_axial")?, radial: at("groove_centre_radius")?, groove: at("groove_radius")?, material })
+        let has = |key: &str| !self.get(&format!("bearing.{name}.{key}")).is_null();
+        let groove = match ["groove_radius", "conformity"].map(has) {
+            [true, _] => at("groove_radius")?,
+            [_, true] => 2.0 * nominal * at("conformity")?,
+            _ => nominal / at("osculation")?,
+        };
+        let angle = self.number_or("bearing.contact_angle", 0.0)?;
+        let room = side * (groove - nominal);
+        let (axial, radial) = if has("groove_centre_radius") {
+            (at("groove_centre_axial")?, at("groove_centre_radius")?)
+        } else if self.word("bearing.kind") == "deep-groove" {
+            (0.0, at("radius")? + side * groove)
+        } else {
+            (room * angle.sin(), self.number("bearing.pitch_radius")? + room * angle.cos())
+        };
+        Ok(Race { axial, radial, groove, material: [at("material.youngs_modulus")?, at("material.poisson_ratio")?] })
     }
     /// Refuses keys outside `known` unless their value leaves the feature out.
     fn only(&self, table: &str, known: &str) -> Outcome<()> {
@@ -162,13 +179,16 @@ fn unclaimed<T>(name: &str) -> Outcome<T> {
 /// # Errors
 ///
 /// A feature that this program does not claim, or a key that is absent.
-pub fn read(resolved: &Value) -> Outcome<Scene> {
+pub fn read(resolved: &Value, kind: &str) -> Outcome<Scene> {
     let file = Reader(resolved);
     
     if !["deep-groove", "angular-contact"].contains(&file.word("bearing.kind")) {
         return unclaimed("a scene other than one ball bearing");
     }
-    let turning = !file.get("numerics").is_null();
+    if !["statics", "run"].contains(&kind) {
+        return unclaimed(kind);
+    }
+    let turning = kind == "run";
     let general = "title source defaults units assumptions bearing inner_race outer_race ball_forces traction contact_damping \
                    ball_contact numerics output sweep";
     file.only("", general)?;
@@ -210,7 +230,7 @@ pub fn read(resolved: &Value) -> Outcome<Scene> {
         Some(Run {
             end: file.number("numerics.end")?,
             interval: file.number("numerics.output_interval")?,
-            step: file.get("numerics.step").is_object().then(|| file.number("numerics.step")).transpose()?,
+            step: file.get("numerics.step").is_null().eq(&false).then(|| file.number("numerics.step")).transpose()?,
             from_equilibrium: file.word("numerics.start") != "nominal",
             inertia: [
                 file.number("inner_race.inertia.mass")?,
@@ -228,28 +248,44 @@ pub fn read(resolved: &Value) -> Outcome<Scene> {
     if !speed.is_null() && si(speed).is_none() {
         return unclaimed("a profile over time");
     }
-    let radius = file.number("bearing.ball.radius")?;
+    let given = file.number("bearing.clearance.radial");
+    let given = given.or_else(|_| file.number("bearing.clearance.diametral").map(|clearance| 0.5 * clearance));
+    let radius = file
+        .number("bearing.ball.radius")
+        .or_else(|_| file.number("bearing.ball.diameter").map(|diameter| 0.5 * diameter))
+        .or_else(|_| {
+            let race = |name: &str| file.number(&format!("bearing.{name}_race.radius"));
+            let clearance = given.as_ref().map_or(0.0, |clearance| *clearance);
+            Ok(0.5 * (race("outer")? - race("inner")? - clearance))
+        })?;
     let density = file.number("bearing.ball.material.density")?;
-    Ok(Scene {
-        deep_groove: file.word("bearing.kind") == "deep-groove",
+    let (inner, outer) = (file.race("inner_race", 1.0, radius)?, file.race("outer_race", -1.0, radius)?);
+    let deep_groove = file.word("bearing.kind") == "deep-groove";
+    let applied = !file.get("bearing.inner_race.groove_centre_radius").is_null();
+    let before = if deep_groove { inner.groove + outer.groove - 2.0 * radius + outer.radial - inner.radial } else { 0.0 };
+    let unused = !deep_groove && given.as_ref().is_ok_and(|clearance| *clearance == 0.0);
+    let mut scene = Scene {
+        deep_groove,
         exact: file.word("bearing.hertz") != "hamrock-brewe",
         count: file.get("bearing.balls").as_u64().unwrap_or(0) as usize,
         phase: file.number("bearing.ball_phase")?,
         ball_radius: radius,
+        nominal: radius,
         ball_mass: density * 4.0 / 3.0 * PI * radius.powi(3),
         density,
         ball_material: [file.number("bearing.ball.material.youngs_modulus")?, file.number("bearing.ball.material.poisson_ratio")?],
-        pitch: file.number("bearing.pitch_radius")?,
-        contact_angle: file.number("bearing.contact_angle")?,
-        clearance: file.number_or("bearing.clearance.radial", 0.0)?,
+        pitch: 0.0,
+        contact_angle: file.number_or("bearing.contact_angle", 0.0)?,
+        clearance: if applied { given.as_ref().map_or(before, |clearance| *clearance) } else { before },
         through: match file.word("bearing.clearance.through") {
             "ball" => Through::Ball,
             "inner-race" => Through::Inner,
             "outer-race" => Through::Outer,
+            "" if given.is_err() || unused || file.word("defaults") == "dissertation" => Through::Ball,
             _ => Through::Races,
         },
-        inner: file.race("inner_race")?,
-        outer: file.race("outer_race")?,
+        inner,
+        outer,
         gravity,
         // A run always has centrifugal forces.
         centrifugal: turning || file.get("ball_forces.centrifugal") == &Value::Bool(true),
@@ -259,7 +295,12 @@ pub fn read(resolved: &Value) -> Outcome<Scene> {
         free,
         condition,
         run,
-    })
+    };
+    scene.set_clearance(if applied { scene.clearance } else { given.unwrap_or(before) });
+    if !deep_groove {
+        scene.pitch = file.number("bearing.pitch_radius")?;
+    }
+    Ok(scene)
 }
 
 impl Scene {

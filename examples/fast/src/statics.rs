@@ -19,6 +19,8 @@ pub struct Common {
     pub centre: [f64; 3],
     /// The outer race is at the origin without tilt.
     plain: bool,
+    /// Last Newton step as a fraction of the pitch radius.
+    pub tolerance: f64,
     /// Balls carry weight or centrifugal force.
     body_forces: bool,
 }
@@ -62,13 +64,14 @@ pub fn axes([_, _, _, xi, lambda]: [f64; 5]) -> [[f64; 3]; 3] {
 }
 
 impl Common {
-    pub fn new(scene: &Scene) -> Common {
+    pub fn new(scene: &Scene, tolerance: f64) -> Common {
         let ring = (0..scene.count).map(|ball| (TAU * ball as f64 / scene.count as f64).sin_cos());
         Common {
             ring: ring.map(|(sin, cos)| [cos, sin]).collect(),
             free: scene.free,
             frame: axes(scene.outer_at),
             centre: [scene.outer_at[0], scene.outer_at[1], scene.outer_at[2]],
+            tolerance,
             plain: scene.outer_at == [0.0; 5],
             body_forces: scene.gravity != [0.0; 3] || scene.centrifugal,
         }
@@ -199,10 +202,9 @@ fn settle<R: Real>(common: &Common, l: &Lanes<R>, pose: &Pose<R>, azimuth: [R; 2
         let force = [l.weight[0], local(l.weight, azimuth)[1] + l.spin * l.pitch];
         let size = (force[0] * force[0] + force[1] * force[1]).root() + R::splat(1e-30);
         let pressed = |side: usize| {
-            let share = (size / l.stiffness[side]).root();
-            // A cube root by Newton's method from the square root is not needed to more than a few digits.
-            let overlap = (0..6).fold(share, |x, _| x - (x * x * x - share * share) / (R::splat(3.0) * x * x));
-            l.race[side][2] + overlap * overlap
+            let root = size / l.stiffness[side];
+            let root = R::from_lanes(|lane| root.lane(lane).cbrt());
+            l.race[side][2] + root * root
         };
         let on = [(inner, pressed(0)), ([xo, dro], pressed(1))]
             .map(|(base, arm)| [0, 1].map(|i| base[i] + force[i] * arm / size));
@@ -411,7 +413,7 @@ fn evaluate<R: Real>(common: &Common, l: &Lanes<R>, q: &[R; 5], places: &mut [[R
         own_stiffness = [own_stiffness[0] + xx, own_stiffness[1] + xr, own_stiffness[2] + rr];
         let loaded = own_stiffness[0] + own_stiffness[2];
         let centrifugal = loaded.positive(-l.spin, l.spin);
-        let tiny = R::splat(1e-3);
+        let tiny = R::splat(1e-8);
         let [daa, dar, drr] = [own_stiffness[0] + tiny, own_stiffness[1], own_stiffness[2] + centrifugal + tiny];
         let per = one / (daa * drr - dar * dar);
         let inverse = |v: [R; 2]| [(drr * v[0] - dar * v[1]) * per, (daa * v[1] - dar * v[0]) * per];
@@ -526,7 +528,7 @@ fn finish(common: &Common, problems: &[Problem], start: [f64x4; 5]) -> Vec<Equil
     let (mut energy, mut places) = (R::splat(1e300), base_balls.clone());
     let mut system = System { energy, gradient: [zero; 5], stiffness: [[zero; 5]; 5], balls: Vec::with_capacity(count) };
     let (cap, ball_cap) = (l.pitch * R::splat(2e-3), l.pitch * R::splat(5e-4));
-    let enough = R::splat(1e-12) * l.pitch;
+    let enough = R::splat(common.tolerance) * l.pitch;
     let (mut at, mut left, mut sound) = (base, zero, zero);
     for _ in 0..100 {
         for i in 0..5 {
@@ -566,7 +568,7 @@ fn finish(common: &Common, problems: &[Problem], start: [f64x4; 5]) -> Vec<Equil
             break;
         }
     }
-    let converged = left - enough;
+    let converged = left - R::splat(1e-11) * l.pitch;
     (0..problems.len())
         .map(|lane| Equilibrium {
             position: at.map(|value| value.lane(lane)),
