@@ -95,7 +95,7 @@ pub fn solve(batch: &Value) -> Outcome<Vec<u8>> {
     columns.extend(grid.keys.iter().map(|(key, _)| key.clone()));
     let lanes = if scene.run.is_some() {
         columns.extend(statistics(scene.count));
-        4
+        8
     } else {
         columns.extend(equilibrium_columns(scene.count, every_ball));
         8

@@ -1,6 +1,7 @@
 //! Results of one scene in the form of a case pack: `summary.json` and `series.csv`.
 
 use crate::batch::{append, ellipse, largest};
+use crate::lanes::{add, cross, dot};
 use crate::motion::{columns, positions, run_of, tables};
 use crate::scene::{COORDINATES, Outcome, Race, Scene, Stop, Through};
 use crate::statics::{Common, Problem, axes, solve_lanes};
@@ -26,14 +27,6 @@ fn five(values: [f64; 5], straight: &str, turn: &str, factor: f64) -> Value {
     let unit = |i: usize| if i < 3 { straight } else { turn };
     let value = |i: usize| if i < 3 { values[i] } else { values[i] * factor };
     Value::Object((0..5).map(|i| (COORDINATES[i].into(), quantity(value(i), unit(i)))).collect())
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
 }
 
 /// Column names and values of a tree of quantities: names joined by underscores.
@@ -126,17 +119,14 @@ fn statics(scene: &Scene) -> Outcome<(Value, Vec<u8>)> {
             let arm = [0, 1, 2].map(|i| place[i] - centres[side][i]);
             let axis = frames[side][0];
             let axial = dot(axis, arm);
-            let across = [0, 1, 2].map(|i| arm[i] - axial * axis[i]);
+            let across = add(arm, -axial, axis);
             let radial = dot(across, across).sqrt();
             let (dx, dr) = (axial - race.axial, radial - race.radial);
             let length = dx.hypot(dr);
             let load = found.ball_loads[ball][side];
             let force = [0, 1, 2].map(|i| load * (dx * axis[i] + dr * across[i] / radial) / length);
             let moment = cross(arm, force);
-            for i in 0..3 {
-                sums[side][0][i] += force[i];
-                sums[side][1][i] += moment[i];
-            }
+            sums[side] = [add(sums[side][0], 1.0, force), add(sums[side][1], 1.0, moment)];
             if side == 0 {
                 // The cage carries what acts along the orbit.
                 let axis = common.frame[0];

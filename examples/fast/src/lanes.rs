@@ -1,18 +1,11 @@
 //! Numbers in vector lanes: one scene in each lane.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
-use wide::{f32x8, f64x4};
+use wide::{f32x8, f64x4, f64x8};
 
 /// A vector of numbers, one for each scene.
 pub trait Real:
-    Copy
-    + Send
-    + Sync
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Send + Sync + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     const LANES: usize;
     fn splat(value: f64) -> Self;
@@ -88,6 +81,24 @@ macro_rules! real {
 }
 real!(f64x4, f64, 4);
 real!(f32x8, f32, 8);
+real!(f64x8, f64, 8);
+
+/// Scalar product; for numbers as for vector lanes.
+#[inline(always)]
+pub fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: [T; 3], b: [T; 3]) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub fn cross<T: Copy + Sub<Output = T> + Mul<Output = T>>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// `a` + `factor` · `b`.
+#[inline(always)]
+pub fn add<T: Copy + Add<Output = T> + Mul<Output = T>>(a: [T; 3], factor: T, b: [T; 3]) -> [T; 3] {
+    [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]]
+}
 
 /// Solves `matrix` x = `right` in every lane by Cholesky's method without roots. A pivot below `floor` times its diagonal
 /// is replaced by that diagonal; the second result is positive where none was.

@@ -1,18 +1,40 @@
 //! Runs of a bearing without traction and cage: Newton's and Euler's laws, Runge–Kutta steps, one scene in each lane.
 
-use crate::lanes::Real;
+use crate::lanes::{Real, add, cross, dot};
 use crate::scene::{Outcome, Run, Scene, Stop};
 use crate::statics::{Common, Equilibrium, Problem, axes, solve_lanes};
-use wide::f64x4;
+use wide::f64x8;
 
-type R = f64x4;
+type R = f64x8;
 type Vector = [R; 3];
 
-/// Position and velocity of the inner race, then of each ball.
+/// Coordinates of the inner race, their rates, then position and velocity of each ball.
 #[derive(Clone)]
-pub struct State {
-    pub race: [[R; 5]; 2],
-    pub balls: Vec<[Vector; 2]>,
+pub struct State(Vec<R>);
+
+impl State {
+    #[inline(always)]
+    fn race(&self) -> [[R; 5]; 2] {
+        let n = &self.0[..10];
+        [[n[0], n[1], n[2], n[3], n[4]], [n[5], n[6], n[7], n[8], n[9]]]
+    }
+
+    #[inline(always)]
+    fn ball(&self, ball: usize) -> [Vector; 2] {
+        let numbers = &self.0[10 + 6 * ball..16 + 6 * ball];
+        [[numbers[0], numbers[1], numbers[2]], [numbers[3], numbers[4], numbers[5]]]
+    }
+
+    /// `base` + `factor` · `slope`.
+    fn set(&mut self, base: &State, factor: f64, slope: &State) {
+        let factor = R::splat(factor);
+        self.0.iter_mut().zip(&base.0).zip(&slope.0).for_each(|((own, base), slope)| *own = *base + factor * *slope);
+    }
+
+    fn increase(&mut self, factor: f64, slope: &State) {
+        let factor = R::splat(factor);
+        self.0.iter_mut().zip(&slope.0).for_each(|(own, slope)| *own += factor * *slope);
+    }
 }
 
 /// Contact of one ball with one race.
@@ -33,8 +55,6 @@ struct Groove {
     radial: R,
     room: R,
     stiffness: R,
-    /// +1 for the outer race, −1 for the inner one: side of the groove's material.
-    outward: R,
 }
 
 pub struct Runs<'a> {
@@ -48,18 +68,6 @@ pub struct Runs<'a> {
     spin: R,
     pub steps: usize,
     pub step: f64,
-}
-
-fn dot(a: Vector, b: Vector) -> R {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn add(a: Vector, factor: R, b: Vector) -> Vector {
-    [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]]
 }
 
 fn lanes<T>(items: &[T], value: impl Fn(&T) -> f64) -> R {
@@ -122,7 +130,7 @@ impl<'a> Runs<'a> {
         };
         let fastest = scenes.iter().zip(&here).map(fastest).fold(0.0, f64::max);
         let steps = (run.interval / run.step.unwrap_or(fraction / fastest)).ceil() as usize;
-        let start: Vec<_> = (0..scenes.len())
+        let start: Vec<Vec<f64>> = (0..scenes.len())
             .map(|i| {
                 let (scene, orbital, step) = (&scenes[i], scenes[i].orbital(), ahead(&scenes[i]));
                 let moving = run.from_equilibrium && step != 0.0;
@@ -142,18 +150,15 @@ impl<'a> Runs<'a> {
                     .iter()
                     .zip(&drifts)
                     .map(|(place, drift)| {
-                        let arm = [0, 1, 2].map(|k| place[k] - common.centre[k]);
-                        [0, 1, 2].map(|k| {
-                            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-                            drift[k] - common.centre[k] + orbital * (axis[a] * arm[b] - axis[b] * arm[a])
-                        })
+                        let orbit = cross(axis, add(*place, -1.0, common.centre));
+                        add(add(*drift, -1.0, common.centre), orbital, orbit)
                     })
                     .collect();
                 let prescribed = std::array::from_fn(|k| if scene.free[k] { 0.0 } else { scene.condition[k] });
-                let q: [f64; 5] = if run.from_equilibrium { here[i].position } else { prescribed };
-                let v: [f64; 5] =
-                    std::array::from_fn(|k| rate(here[i].position[k], first[i].position[k], second[i].position[k]));
-                (q, v, places, speeds)
+                let q = if run.from_equilibrium { here[i].position } else { prescribed };
+                let v = (0..5).map(|k| rate(here[i].position[k], first[i].position[k], second[i].position[k]));
+                let balls = places.iter().zip(&speeds).flat_map(|(place, speed)| [*place, *speed]).flatten();
+                q.into_iter().chain(v).chain(balls).collect()
             })
             .collect();
         let five = |value: &dyn Fn(&Scene, usize) -> f64| [0, 1, 2, 3, 4].map(|i| lanes(scenes, |scene| value(scene, i)));
@@ -164,7 +169,6 @@ impl<'a> Runs<'a> {
                 radial: lanes(scenes, |scene| race(scene).radial),
                 room: lanes(scenes, |scene| race(scene).groove - scene.ball_radius),
                 stiffness: lanes(&hertz, |hertz| hertz[side].stiffness),
-                outward: R::splat(if side == 0 { -1.0 } else { 1.0 }),
             }
         };
         let runs = Runs {
@@ -179,46 +183,48 @@ impl<'a> Runs<'a> {
             steps,
             step: run.interval / steps as f64,
         };
-        let vector = |value: &dyn Fn(usize, usize) -> f64| [0, 1, 2].map(|k| R::from_lanes(|i| value(i.min(scenes.len() - 1), k)));
-        let balls = (0..scenes[0].count).map(|ball| [vector(&|i, k| start[i].2[ball][k]), vector(&|i, k| start[i].3[ball][k])]);
-        let race = [[0, 1, 2, 3, 4].map(|k| lanes(&start, |s| s.0[k])), [0, 1, 2, 3, 4].map(|k| lanes(&start, |s| s.1[k]))];
-        let state = State { race, balls: balls.collect() };
-        Ok((runs, state))
+        let state = (0..start[0].len()).map(|i| lanes(&start, |start| start[i])).collect();
+        Ok((runs, State(state)))
     }
 
-    /// Contact of a ball with a race; `turn` is the angular velocity of the race.
+    /// Contact of a ball with the inner race (`SIDE` 0), which turns, or the outer one, which does not.
     #[inline(always)]
-    fn contact(&self, side: usize, axis: Vector, arm: Vector, velocity: Vector, turn: Vector) -> Contact {
-        let groove = &self.grooves[side];
+    fn contact<const SIDE: usize>(&self, axis: Vector, arm: Vector, velocity: Vector, turn: Vector) -> Contact {
+        let groove = &self.grooves[SIDE];
         let (zero, one) = (R::zero(), R::splat(1.0));
         let axial = dot(axis, arm);
         let across = add(arm, -axial, axis);
         let radial = dot(across, across).root();
         let (dx, dr) = (axial - groove.axial, radial - groove.radial);
         // Beyond 90° the groove walls continue straight.
-        let dr = groove.outward * (groove.outward * dr).largest(zero);
+        let dr = if SIDE == 0 { dr.smallest(zero) } else { dr.largest(zero) };
         let distance = (dx * dx + dr * dr).root();
-        let per = one / distance;
-        let factor = dr * per / radial;
-        let normal = add(across.map(|v| v * factor), dx * per, axis);
-        let lever = cross(arm, normal);
-        let rate = dot(normal, velocity) - dot(lever, turn);
+        let both = one / (distance * radial);
+        let (factor, share) = (dr * both, dx * both * radial);
+        let normal = add(across.map(|v| v * factor), share, axis);
+        let (lever, rate) = if SIDE == 0 {
+            let lever = cross(arm, normal);
+            (lever, dot(normal, velocity) - dot(lever, turn))
+        } else {
+            ([zero; 3], dot(normal, velocity))
+        };
         let overlap = (distance - groove.room).largest(zero);
         let elastic = groove.stiffness * overlap * overlap.root();
         let load = elastic * (one + self.damping * rate).largest(zero);
-        Contact { load, normal, lever, tangent: [groove.outward * dx, groove.outward * dr] }
+        let outward = if SIDE == 0 { -one } else { one };
+        Contact { load, normal, lever, tangent: [outward * dx, outward * dr] }
     }
 
     /// Contacts of a ball with the inner and the outer race.
     #[inline(always)]
     pub fn contacts(&self, state: &State, pose: &Pose, ball: usize) -> [Contact; 2] {
-        let [place, velocity] = state.balls[ball];
-        let [q, v] = &state.race;
+        let [place, velocity] = state.ball(ball);
+        let [q, v] = state.race();
         let minus = R::splat(-1.0);
         let (centre, moving) = ([q[0], q[1], q[2]], [v[0], v[1], v[2]]);
-        let inner = self.contact(0, pose.frame[0], add(place, minus, centre), add(velocity, minus, moving), pose.turn);
+        let inner = self.contact::<0>(pose.frame[0], add(place, minus, centre), add(velocity, minus, moving), pose.turn);
         let arm = add(place, minus, self.common.centre.map(R::splat));
-        let outer = self.contact(1, self.common.frame[0].map(R::splat), arm, velocity, [R::zero(); 3]);
+        let outer = self.contact::<1>(self.common.frame[0].map(R::splat), arm, velocity, [R::zero(); 3]);
         [inner, outer]
     }
 
@@ -226,16 +232,21 @@ impl<'a> Runs<'a> {
     fn rates(&self, state: &State, out: &mut State) {
         let zero = R::zero();
         let pose = Pose::new(state);
-        let [_, v] = &state.race;
+        let [_, v] = state.race();
         let (mut force, mut moment) = ([zero; 3], [zero; 3]);
         let per_mass = R::splat(-1.0) / self.ball_mass;
         let gravity = self.gravity.map(R::splat);
-        for (ball, slot) in out.balls.iter_mut().enumerate() {
+        let (race, balls) = out.0.split_at_mut(10);
+        for (ball, slot) in balls.chunks_exact_mut(6).enumerate() {
             let [inner, outer] = self.contacts(state, &pose, ball);
             force = add(force, inner.load, inner.normal);
             moment = add(moment, inner.load, inner.lever);
             let acceleration = add(gravity, per_mass * inner.load, inner.normal);
-            *slot = [state.balls[ball][1], add(acceleration, per_mass * outer.load, outer.normal)];
+            let acceleration = add(acceleration, per_mass * outer.load, outer.normal);
+            let velocity = state.ball(ball)[1];
+            for i in 0..3 {
+                (slot[i], slot[3 + i]) = (velocity[i], acceleration[i]);
+            }
         }
         let [mass, axial, transverse] = self.inertia;
         let (sin, cos) = pose.second;
@@ -246,7 +257,10 @@ impl<'a> Runs<'a> {
         let dw3 = (dot(moment, pose.frame[2]) + self.load[4] + w2 * momentum) / transverse - f1 * w2;
         let straight = [0, 1, 2].map(|i| (force[i] + self.load[i]) / mass + gravity[i]);
         let all = [straight[0], straight[1], straight[2], (dw2 + f1 * w3) / cos, dw3];
-        out.race = [*v, std::array::from_fn(|i| if self.common.free[i] { all[i] } else { zero })];
+        race[..5].copy_from_slice(&v);
+        for (i, slot) in race[5..].iter_mut().enumerate() {
+            *slot = if self.common.free[i] { all[i] } else { zero };
+        }
     }
 
     /// Advances the state by one output interval with classical Runge–Kutta steps.
@@ -278,7 +292,7 @@ pub struct Pose {
 impl Pose {
     #[inline(always)]
     pub fn new(state: &State) -> Pose {
-        let [q, v] = &state.race;
+        let [q, v] = state.race();
         let ((sy, cy), (sz, cz)) = (q[3].sin_cos_small(), q[4].sin_cos_small());
         let zero = R::zero();
         let frame = [[cy * cz, sz, -sy * cz], [-cy * sz, cz, sy * sz], [sy, zero, cy]];
@@ -286,45 +300,17 @@ impl Pose {
     }
 }
 
-impl State {
-    /// `base` + `factor` · `slope`.
-    fn set(&mut self, base: &State, factor: f64, slope: &State) {
-        let factor = R::splat(factor);
-        for k in 0..2 {
-            for i in 0..5 {
-                self.race[k][i] = base.race[k][i] + factor * slope.race[k][i];
-            }
-        }
-        for ((own, base), slope) in self.balls.iter_mut().zip(&base.balls).zip(&slope.balls) {
-            *own = [add(base[0], factor, slope[0]), add(base[1], factor, slope[1])];
-        }
-    }
-
-    fn increase(&mut self, factor: f64, slope: &State) {
-        let factor = R::splat(factor);
-        for k in 0..2 {
-            for i in 0..5 {
-                self.race[k][i] = self.race[k][i] + factor * slope.race[k][i];
-            }
-        }
-        for (own, slope) in self.balls.iter_mut().zip(&slope.balls) {
-            *own = [add(own[0], factor, slope[0]), add(own[1], factor, slope[1])];
-        }
-    }
-}
-
 /// One row of a run: columns of [`columns`], in SI units, of one lane.
 pub fn row(runs: &Runs, state: &State, scene: &Scene, lane: usize, time: f64, turned: &mut [f64]) -> Vec<f64> {
     let pose = Pose::new(state);
     let mut row = vec![time];
-    row.extend(state.race[0].iter().map(|value| value.lane(lane)));
-    row.extend(state.race[1][..3].iter().map(|value| value.lane(lane)));
+    row.extend(state.0[..8].iter().map(|value| value.lane(lane)));
     row.push(scene.speed);
     let frame = axes(scene.outer_at);
     let mut sums = [[0.0; 5]; 2];
     let mut loads = Vec::with_capacity(2 * turned.len());
     for (ball, turned) in turned.iter_mut().enumerate() {
-        let [place, velocity] = state.balls[ball].map(|v| v.map(|value| value.lane(lane)));
+        let [place, velocity] = state.ball(ball).map(|v| v.map(|value| value.lane(lane)));
         let inside = |v: [f64; 3]| frame.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2]);
         let ([_, y, z], [_, vy, vz]) = (inside([0, 1, 2].map(|i| place[i] - scene.outer_at[i])), inside(velocity));
         let turn = std::f64::consts::TAU;
@@ -385,7 +371,7 @@ pub fn tables(scenes: &[Scene], common: &Common, fraction: f64) -> Outcome<Vec<V
         }
         for (lane, scene) in scenes.iter().enumerate() {
             tables[lane].push(row(&runs, &state, scene, lane, index as f64 * run.interval, &mut turned[lane]));
-            let at = |ball: usize| state.balls[ball % scene.count][0].map(|value| value.lane(lane));
+            let at = |ball: usize| state.ball(ball % scene.count)[0].map(|value| value.lane(lane));
             let apart = |ball: usize| {
                 let (a, b) = (at(ball), at(ball + 1));
                 (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()

@@ -181,7 +181,7 @@ fn unclaimed<T>(name: &str) -> Outcome<T> {
 /// A feature that this program does not claim, or a key that is absent.
 pub fn read(resolved: &Value, kind: &str) -> Outcome<Scene> {
     let file = Reader(resolved);
-    
+
     if !["deep-groove", "angular-contact"].contains(&file.word("bearing.kind")) {
         return unclaimed("a scene other than one ball bearing");
     }
@@ -273,7 +273,10 @@ pub fn read(resolved: &Value, kind: &str) -> Outcome<Scene> {
         nominal: radius,
         ball_mass: density * 4.0 / 3.0 * PI * radius.powi(3),
         density,
-        ball_material: [file.number("bearing.ball.material.youngs_modulus")?, file.number("bearing.ball.material.poisson_ratio")?],
+        ball_material: [
+            file.number("bearing.ball.material.youngs_modulus")?,
+            file.number("bearing.ball.material.poisson_ratio")?,
+        ],
         pitch: 0.0,
         contact_angle: file.number_or("bearing.contact_angle", 0.0)?,
         clearance: if applied { given.as_ref().map_or(before, |clearance| *clearance) } else { before },

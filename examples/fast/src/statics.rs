@@ -4,7 +4,7 @@
 //! Newton's method in double precision over race and balls finishes it with exact derivatives. Ball unknowns are
 //! eliminated at each step.
 
-use crate::lanes::{Real, solve};
+use crate::lanes::{Real, cross, dot, solve};
 use crate::scene::{Hertz, Scene};
 use std::f64::consts::TAU;
 use wide::{f32x8, f64x4};
@@ -165,11 +165,6 @@ impl<R: Real> Pose<R> {
     }
 }
 
-#[inline(always)]
-fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// Components along the axis, the radius and the orbit of a ball.
 #[inline(always)]
 fn local<R: Real>(v: [R; 3], [c, s]: [R; 2]) -> [R; 3] {
@@ -206,8 +201,8 @@ fn settle<R: Real>(common: &Common, l: &Lanes<R>, pose: &Pose<R>, azimuth: [R; 2
             let root = R::from_lanes(|lane| root.lane(lane).cbrt());
             l.race[side][2] + root * root
         };
-        let on = [(inner, pressed(0)), ([xo, dro], pressed(1))]
-            .map(|(base, arm)| [0, 1].map(|i| base[i] + force[i] * arm / size));
+        let on =
+            [(inner, pressed(0)), ([xo, dro], pressed(1))].map(|(base, arm)| [0, 1].map(|i| base[i] + force[i] * arm / size));
         place = [0, 1].map(|i| overlap.positive(place[i], force[1].positive(on[1][i], on[0][i])));
     }
     (place, overlap)
@@ -224,7 +219,8 @@ fn coarse<R: Real>(common: &Common, problems: &[Problem]) -> [R; 5] {
     // Extra overlap of every ball, reduced to zero: all balls carry load at first.
     let whole = spread::<R>(problems, |p| {
         let sum: f64 = p.hertz.iter().map(|h| h.stiffness.cbrt().powi(-2)).sum();
-        let force: f64 = (0..5).filter(|i| common.free[*i]).map(|i| p.condition[i].abs() * if i < 3 { 1.0 } else { 1.0 / p.pitch }).sum();
+        let force: f64 =
+            (0..5).filter(|i| common.free[*i]).map(|i| p.condition[i].abs() * if i < 3 { 1.0 } else { 1.0 / p.pitch }).sum();
         let deflection = (4.0 * force / common.ring.len() as f64).cbrt().powi(2) * sum;
         let ([xi, ri, gi], [xo, ro, go]) = (p.race[0], p.race[1]);
         deflection + (gi + go - (xi - xo).hypot(ri - ro)).max(0.0)
@@ -381,7 +377,7 @@ fn evaluate<R: Real>(common: &Common, l: &Lanes<R>, q: &[R; 5], places: &mut [[R
         energy = energy + stored;
         let n = [nx, nr, nt];
         let w = [(alpha - axial * nx) * per, (far - axial * nr) * per, (t - axial * nt) * per];
-        let tangent = [n[1] * w[2] - n[2] * w[1], n[2] * w[0] - n[0] * w[2], n[0] * w[1] - n[1] * w[0]];
+        let tangent = cross(n, w);
         let normal = [0, 1, 2].map(|i| c1 * n[i] + c2 * w[i]);
         let across = [0, 1, 2].map(|i| c1 * w[i] - c2 * n[i]);
         let arm = [alpha, far, t];
@@ -391,7 +387,9 @@ fn evaluate<R: Real>(common: &Common, l: &Lanes<R>, q: &[R; 5], places: &mut [[R
         let (sigma, kappa) = (c1 - c2 * lean, c2 * per);
         let (delta, cross) = (lever.map(|b| b * sigma), lever.map(|b| -(b * (c2 + c1 * lean))));
         let turn = inner / length;
-        let at = |i: usize, k: usize| slope * normal[i] * normal[k] + turn * across[i] * across[k] + inner * kappa * tangent[i] * tangent[k];
+        let at = |i: usize, k: usize| {
+            slope * normal[i] * normal[k] + turn * across[i] * across[k] + inner * kappa * tangent[i] * tangent[k]
+        };
         let (xx, xr, xt, rr, rt, tt) = (at(0, 0), at(0, 1), at(0, 2), at(1, 1), at(1, 2), at(2, 2));
         // By ball position and tilt; by race position it is the negative.
         let mixed: [[R; 3]; 2] = std::array::from_fn(|k| {
@@ -420,13 +418,7 @@ fn evaluate<R: Real>(common: &Common, l: &Lanes<R>, q: &[R; 5], places: &mut [[R
         let ball_race = [[-xx, -xr, -xt, mixed[0][0], mixed[1][0]], [-xr, -rr, -rt, mixed[0][1], mixed[1][1]]];
         let back: [[R; 2]; 5] = std::array::from_fn(|i| inverse([ball_race[0][i], ball_race[1][i]]));
         let moved = inverse(own);
-        let raw = [
-            -(inner * normal[0]),
-            -(inner * normal[1]),
-            -(inner * normal[2]),
-            inner * delta[0],
-            inner * delta[1],
-        ];
+        let raw = [-(inner * normal[0]), -(inner * normal[1]), -(inner * normal[2]), inner * delta[0], inner * delta[1]];
         let g: [R; 5] = std::array::from_fn(|i| raw[i] - ball_race[0][i] * moved[0] - ball_race[1][i] * moved[1]);
         let direct = [
             [xx, zero, zero, zero, zero],
