@@ -125,8 +125,8 @@ def deviations(reference, table):
 
 
 def worst(found, *parts):
-    """Largest difference over channels whose name contains one of `parts`, and the largest value of those channels."""
-    chosen = [pair for name, pair in found.items() if any(part in name for part in parts)]
+    """Largest difference over channels whose name starts with one of `parts`, and the largest value of those channels."""
+    chosen = [pair for name, pair in found.items() if name.startswith(parts)]
     return max((e for e, _ in chosen), default=0.0), max((v for _, v in chosen), default=0.0)
 
 
@@ -175,7 +175,7 @@ def main():
             report(label, len(table), pairs)
             for name, solve, settings in (("bearing", programs.reference, numerics), ("fast", programs.candidate, fixed)):
                 found = deviations(exact, solve(running(**settings), few, "runs")[1])
-                for title, parts in (("inner position, m", ("inner_x", "inner_y", "inner_z")), ("ball load, N", ("er_load",))):
+                for title, parts in (("position of the race, m", ("inner_x", "inner_y", "inner_z")), ("ball load, N", tuple(f"ball_{ball}_{race}_load" for ball in range(1, 10) for race in ("inner", "outer")))):
                     print("  {}, {}: largest error {:.1e} of {:.1e}".format(name, title, *worst(found, *parts)))
 
 

@@ -522,7 +522,7 @@ fn finish(common: &Common, problems: &[Problem], start: [f64x4; 5]) -> Vec<Equil
     let (cap, ball_cap) = (l.pitch * R::splat(2e-3), l.pitch * R::splat(5e-4));
     let enough = R::splat(common.tolerance) * l.pitch;
     let (mut at, mut left, mut sound) = (base, zero, zero);
-    for _ in 0..100 {
+    for _ in 0..200 {
         for i in 0..5 {
             at[i] = base[i] + part * step[i];
         }
@@ -555,6 +555,18 @@ fn finish(common: &Common, problems: &[Problem], start: [f64x4; 5]) -> Vec<Equil
         left = worse.positive(R::splat(1.0), left);
         energy = worse.positive(energy, now);
         part = worse.positive(part * R::splat(0.3), R::splat(1.0));
+        let stalled = R::splat(0.01) - part;
+        if any(stalled) {
+            // The direction does not descend: start again from settled balls.
+            let pose = Pose::new(common, &base);
+            for (place, ring) in base_balls.iter_mut().zip(&common.ring) {
+                let settled = settle(common, &l, &pose, l.azimuth(*ring)).0;
+                *place = [0, 1].map(|i| stalled.positive(settled[i], place[i]));
+            }
+            ball_step.iter_mut().flatten().chain(&mut step).for_each(|value| *value = stalled.positive(zero, *value));
+            energy = stalled.positive(R::splat(1e300), energy);
+            part = stalled.positive(R::splat(1.0), part);
+        }
         sound = positive;
         if !any(left - enough) {
             break;
