@@ -59,14 +59,20 @@ def running(**numerics):
 RUN_GRID = [("inner_race.z.load", -50, -300, "N"), ("bearing.clearance.radial", -6, -3, "um"), ("bearing.ball_phase", 0, 39, "deg")]
 
 
-def quantities(node):
-    """Texts such as "5 um" as {"value", "unit"}."""
+BALL_LOADS = tuple(f"ball_{ball}_{race}_load" for ball in range(1, 10) for race in ("inner", "outer"))
+
+
+SI = {"um": 1e-6, "mm": 1e-3, "us": 1e-6, "ms": 1e-3, "deg": DEGREE, "rpm": math.pi / 30.0, "GPa": 1e9}
+
+
+def in_si(node):
+    """Texts such as "5 um" as numbers in SI units."""
     if isinstance(node, dict):
-        return {key: quantities(item) for key, item in node.items()}
+        return {key: in_si(item) for key, item in node.items()}
     if isinstance(node, list):
-        return [quantities(item) for item in node]
+        return [in_si(item) for item in node]
     number, _, unit = node.partition(" ") if isinstance(node, str) else ("", "", "")
-    return {"value": float(number), "unit": unit} if unit else node
+    return float(number) * SI.get(unit, 1.0) if unit else node
 
 
 def counts(points):
@@ -98,10 +104,10 @@ class Programs:
 
     def candidate(self, scene, grid, of):
         """Wall and processor time, and table, of `fast batch`."""
-        vary = [{"key": key, "from": {"value": low, "unit": unit}, "to": {"value": high, "unit": unit}, "count": count}
+        vary = [{"key": key, "from": low * SI.get(unit, 1.0), "to": high * SI.get(unit, 1.0), "count": count}
                 for key, low, high, unit, count in grid]
         kind = "statics" if of == "statics" else "run"
-        batch = {"scene": quantities(scene), "of": kind, "vary": vary, "balls": False}
+        batch = {"scene": in_si(scene), "of": kind, "vary": vary, "balls": False}
         (self.folder / "batch.json").write_text(json.dumps(batch))
         spent = self.timed([self.fast, "batch", self.folder / "batch.json", self.folder / "fast.csv"])
         return spent, list(csv.DictReader(open(self.folder / "fast.csv")))
@@ -173,9 +179,10 @@ def main():
                 quick, table = programs.candidate(running(**fixed), grid, "runs")
                 pairs.append((slow, quick))
             report(label, len(table), pairs)
+            print("  between the programs, ball load, N: largest difference {:.1e} of {:.1e}".format(*worst(deviations(reference, table), *BALL_LOADS)))
             for name, solve, settings in (("bearing", programs.reference, numerics), ("fast", programs.candidate, fixed)):
                 found = deviations(exact, solve(running(**settings), few, "runs")[1])
-                for title, parts in (("position of the race, m", ("inner_x", "inner_y", "inner_z")), ("ball load, N", tuple(f"ball_{ball}_{race}_load" for ball in range(1, 10) for race in ("inner", "outer")))):
+                for title, parts in (("position of the race, m", ("inner_x", "inner_y", "inner_z")), ("ball load, N", BALL_LOADS)):
                     print("  {}, {}: largest error {:.1e} of {:.1e}".format(name, title, *worst(found, *parts)))
 
 

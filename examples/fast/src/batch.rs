@@ -1,13 +1,13 @@
 //! Many points of one scene: a grid over some keys, a row of a table for each point.
 
 use crate::motion::{self, tables};
-use crate::scene::{COORDINATES, Hertz, Outcome, Scene, Stop, read, si};
+use crate::scene::{COORDINATES, Hertz, Outcome, Scene, Stop, read};
 use crate::statics::{Common, Equilibrium, Problem, solve_lanes};
 use rayon::prelude::*;
 use serde_json::Value;
 
 /// Tolerance of equilibria, see [`Common`].
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-13;
 
 /// Step of a run without a given one, as a fraction of 1 rad of its fastest oscillation.
 const FRACTION: f64 = 0.1;
@@ -27,9 +27,9 @@ impl Grid {
             let key = axis["key"].as_str().unwrap_or_default();
             let wrong = || Stop::Error(format!("vary {key}: `values`, or `from`, `to` and `count`, are needed"));
             let values = match axis["values"].as_array() {
-                Some(values) => values.iter().map(si).collect::<Option<Vec<f64>>>().ok_or_else(wrong)?,
+                Some(values) => values.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>().ok_or_else(wrong)?,
                 None => {
-                    let (from, to) = (si(&axis["from"]).ok_or_else(wrong)?, si(&axis["to"]).ok_or_else(wrong)?);
+                    let (from, to) = (axis["from"].as_f64().ok_or_else(wrong)?, axis["to"].as_f64().ok_or_else(wrong)?);
                     let count = axis["count"].as_u64().ok_or_else(wrong)?;
                     let share = |i: u64| i as f64 / (count - 1).max(1) as f64;
                     (0..count).map(|i| from + (to - from) * share(i)).collect()
