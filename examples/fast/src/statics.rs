@@ -494,6 +494,16 @@ pub fn solve_lanes(common: &Common, problems: &[Problem]) -> Vec<Equilibrium> {
         let start = first.map(|value| f64x4::from_lanes(|lane| value.lane((4 * group + lane).min(7))));
         let start = std::array::from_fn(|i| if common.free[i] { start[i] } else { spread(four, |p| p.start[i]) });
         let mut equilibria = finish(common, four, start);
+        if common.body_forces && equilibria.iter().any(|one| !one.converged) {
+            // Weight and centrifugal force grow from a small part of their values.
+            let (mut at, mut grown) = (start, Vec::new());
+            for part in [0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.85, 1.0] {
+                let scaled = |p: &Problem| Problem { spin: part * p.spin, weight: p.weight.map(|w| part * w), ..*p };
+                grown = finish(common, &four.iter().map(scaled).collect::<Vec<_>>(), at);
+                at = std::array::from_fn(|i| f64x4::from_lanes(|lane| grown[lane.min(four.len() - 1)].position[i]));
+            }
+            equilibria.iter_mut().zip(grown).filter(|(old, _)| !old.converged).for_each(|(old, new)| *old = new);
+        }
         if equilibria.iter().any(|one| !one.determinate) {
             // A saddle between two mirrored equilibria: start again beside it.
             let beside: [f64x4; 5] = std::array::from_fn(|i| {
@@ -501,7 +511,8 @@ pub fn solve_lanes(common: &Common, problems: &[Problem]) -> Vec<Equilibrium> {
                 let aside = if common.free[i] { if i < 3 { -1e-5 * four[0].pitch } else { 1e-5 } } else { 0.0 };
                 f64x4::from_lanes(|lane| place(lane).position[i] + if place(lane).determinate { 0.0 } else { aside })
             });
-            equilibria = finish(common, four, beside);
+            let moved = finish(common, four, beside);
+            equilibria.iter_mut().zip(moved).filter(|(old, _)| !old.determinate).for_each(|(old, new)| *old = new);
         }
         found.extend(equilibria);
     }
