@@ -129,7 +129,7 @@ impl<'a> Runs<'a> {
             ((stiffness[0] + stiffness[1]) / scene.ball_mass).sqrt()
         };
         let fastest = scenes.iter().zip(&here).map(fastest).fold(0.0, f64::max);
-        let steps = (run.interval / run.step.unwrap_or(fraction / fastest)).ceil() as usize;
+        let steps = (run.interval / run.step.unwrap_or(fraction / fastest) - 1e-9).ceil() as usize;
         let start: Vec<Vec<f64>> = (0..scenes.len())
             .map(|i| {
                 let (scene, orbital, step) = (&scenes[i], scenes[i].orbital(), ahead(&scenes[i]));
