@@ -2,6 +2,7 @@
 
 use super::Fallible;
 use super::solved::{Kind, Solved};
+use bearing_dynamics::output::Series;
 use bearing_dynamics::output::compare::tolerance::{
     ChannelTolerance, RequestedTolerance, ToleranceClass, Tolerances,
 };
@@ -20,6 +21,8 @@ const CLASS: ToleranceClass = ToleranceClass::F64Reordered;
 /// which they are alike.
 const NEIGHBOUR: f64 = 1e-9;
 const ALIKE: f64 = 1e-3;
+/// A column that is rounding and errors of steps alone.
+const RESIDUAL: &str = "energy_residual";
 /// Fewest rows of a trajectory that are compared.
 const FEWEST_ROWS: usize = 2;
 /// Other starts of a chaotic run, and the shift of the balls from one to the next, rad.
@@ -27,6 +30,9 @@ const STARTS: usize = 16;
 const NEXT_START: f64 = 1e-6;
 /// Tolerance over the difference to the same equilibrium with other rounding.
 const OF_ROUNDING: f64 = 10.0;
+/// Least tolerance of forces over the largest force, and of moments over it times the largest length: ten times the
+/// residual at which the search ends.
+const OF_SEARCH: f64 = 1e-10;
 /// Tolerance over the difference to a run of finer steps: another integrator errs as much, or a few times more.
 const OF_STEPS: f64 = 10.0;
 /// Tolerance over the largest difference to the other starts: a further start is outside the largest of 16 now and
@@ -40,8 +46,8 @@ const TAGS: [(&str, &[&str]); 9] = [
     ("hertz", &["hertz"]),
     ("frequencies", &["frequencies", "kinematics", "spectra"]),
     ("determinacy", &["determinacy"]),
-    ("pressure", &["*peak_pressure", "*semi_major", "*semi_minor"]),
-    ("energy", &["energy", "*energy", "*energy_residual"]),
+    ("pressure", &["*peak_pressure", "*largest_pressure", "*semi_major", "*semi_minor"]),
+    ("energy", &["energy", "energy_*", "work_*", "heat_*"]),
     ("statistics", &["window", "extremes", "friction", "final"]),
     ("inertia", &["inertia"]),
 ];
@@ -61,6 +67,7 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
         }
         let reason = format!("{OF_ROUNDING} times the difference to the balls a whole turn on");
         all.channels = spread.tolerances(OF_ROUNDING, &reason);
+        spread.add_floors(&solved.summary, &mut all.channels)?;
         return Ok(all);
     }
     let finer = match finer(scene) {
@@ -77,6 +84,7 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
         finer.iter().try_for_each(|finer| spread.add(finer))?;
         let reason = format!("{OF_STEPS} times the difference to a run with finer steps");
         all.channels = spread.tolerances(OF_STEPS, &reason);
+        all.channels.extend(spread.residuals()?);
         return Ok(all);
     }
     let mut others = finer;
@@ -94,6 +102,7 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
         "{OF_STARTS} times the largest difference to {STARTS} other starts and to finer steps"
     );
     all.channels = spread.tolerances(OF_STARTS, &reason);
+    all.channels.extend(spread.residuals()?);
     Ok(all)
 }
 
@@ -140,8 +149,14 @@ fn shifted(scene: &Value, by: f64) -> Option<Value> {
 /// Number of first rows in which no column differs by more than [`ALIKE`] of its largest value; `None` for all.
 fn rows_alike(one: &Solved, other: &Solved) -> Fallible<Option<usize>> {
     let given = RequestedTolerance { scale_relative: ALIKE, floors: Vec::new() };
-    let options = Options { given: Some(given), ..Options::default() };
     let [one, other] = [one, other].map(|of| of.results().join("series.csv"));
+    let mut tolerances = Tolerances::default();
+    if let Some(name) = Series::read_csv(&one)?.column(RESIDUAL).map(|_| RESIDUAL.to_string()) {
+        let class = Some(ToleranceClass::Ignored);
+        tolerances.channels.insert(name, ChannelTolerance { class, ..ChannelTolerance::default() });
+    }
+    let options =
+        Options { given: Some(given), tolerances: Some(tolerances), ..Options::default() };
     let Some(first) = compare(&one, &other, &options)?.first_divergence else { return Ok(None) };
     let row = first.place.strip_prefix("row ").and_then(|rest| rest.split(' ').next());
     Ok(Some(row.and_then(|row| row.parse::<usize>().ok()).map_or(0, |row| row - 1)))
@@ -183,6 +198,48 @@ impl Spread {
         Ok(())
     }
 
+    /// Channels of the reference with their units.
+    fn channels(&self) -> Fallible<Vec<(String, String)>> {
+        let of = self.reference.path();
+        let all = compare(of, of, &Options::default())?.channels.into_iter();
+        Ok(all.map(|channel| (channel.channel, channel.unit)).collect())
+    }
+
+    /// Residuals are measures of the solution process.
+    fn residuals(&self) -> Fallible<BTreeMap<String, ChannelTolerance>> {
+        let ignored = || ChannelTolerance {
+            class: Some(ToleranceClass::Ignored),
+            reason: Some("a measure of the steps".into()),
+            ..ChannelTolerance::default()
+        };
+        let names = self.channels()?.into_iter().map(|(name, _)| name);
+        Ok(names.filter(|name| name.contains("residual")).map(|name| (name, ignored())).collect())
+    }
+
+    /// Raises the floors of forces and moments to what a search leaves.
+    fn add_floors(
+        &self,
+        summary: &Value,
+        channels: &mut BTreeMap<String, ChannelTolerance>,
+    ) -> Fallible<()> {
+        let (force, length) = (largest(summary, "N"), largest(summary, "m"));
+        for (name, unit) in self.channels()? {
+            let floor = match unit.as_str() {
+                "N" => OF_SEARCH * force,
+                "N m" => OF_SEARCH * force * length,
+                _ => continue,
+            };
+            let class = CLASS.tolerance(&unit).map_or(0.0, |class| class.absolute_floor);
+            let own = channels.get(&name).and_then(|own| own.absolute_floor).unwrap_or(class);
+            if floor > own {
+                let own = channels.entry(name).or_default();
+                own.absolute_floor = Some(floor);
+                own.reason.get_or_insert_with(|| "ten times the residual of a search".into());
+            }
+        }
+        Ok(())
+    }
+
     /// Tolerances of the channels that differ by more than rounding.
     fn tolerances(&self, factor: f64, reason: &str) -> BTreeMap<String, ChannelTolerance> {
         let of = |(channel, (unit, ratio, difference)): (&String, &(String, f64, f64))| {
@@ -206,6 +263,18 @@ impl Spread {
             Some((channel.clone(), own))
         };
         self.largest.iter().filter_map(of).collect()
+    }
+}
+
+/// Largest value of this unit in a summary.
+fn largest(summary: &Value, unit: &str) -> f64 {
+    match summary {
+        Value::Object(map) if map.get("unit").is_some_and(|own| own == unit) => {
+            map.get("value").and_then(Value::as_f64).map_or(0.0, f64::abs)
+        }
+        Value::Object(map) => map.values().map(|part| largest(part, unit)).fold(0.0, f64::max),
+        Value::Array(list) => list.iter().map(|part| largest(part, unit)).fold(0.0, f64::max),
+        _ => 0.0,
     }
 }
 

@@ -197,7 +197,8 @@ pub struct Tolerances {
     pub class: Option<ToleranceClass>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub channels: BTreeMap<String, ChannelTolerance>,
-    /// Channels that a program may leave out, all of a tag or none: names as above, or `*` and the end of a name.
+    /// Channels that a program may leave out, all of a tag or none: names as above, or `*` and
+    /// the end or the start of a name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub tags: BTreeMap<String, Vec<String>>,
     /// Only these first rows of tables are compared: later ones depend on the start.
@@ -289,9 +290,10 @@ impl Tolerances {
 
     /// The tag of a channel.
     pub fn tag(&self, channel: &str) -> Option<&str> {
-        let fits = |name: &String| match name.strip_prefix('*') {
-            Some(end) => channel.ends_with(end),
-            None => is_or_holds(name, channel),
+        let fits = |name: &String| match (name.strip_prefix('*'), name.strip_suffix('*')) {
+            (Some(end), _) => channel.ends_with(end),
+            (None, Some(start)) => channel.starts_with(start),
+            (None, None) => is_or_holds(name, channel),
         };
         let mut tags = self.tags.iter();
         tags.find(|(_, names)| names.iter().any(fits)).map(|(tag, _)| tag.as_str())
