@@ -148,7 +148,9 @@ fn shifted(scene: &Value, by: f64) -> Option<Value> {
 
 /// Number of first rows in which no column differs by more than [`ALIKE`] of its largest value; `None` for all.
 fn rows_alike(one: &Solved, other: &Solved) -> Fallible<Option<usize>> {
-    let given = RequestedTolerance { scale_relative: ALIKE, floors: Vec::new() };
+    // Ball 1 may start at an angle of zero.
+    let floors = vec![("deg".to_string(), 2.0 * (STARTS as f64 * NEXT_START).to_degrees())];
+    let given = RequestedTolerance { scale_relative: ALIKE, floors };
     let [one, other] = [one, other].map(|of| of.results().join("series.csv"));
     let mut tolerances = Tolerances::default();
     if let Some(name) = Series::read_csv(&one)?.column(RESIDUAL).map(|_| RESIDUAL.to_string()) {

@@ -244,7 +244,8 @@ fn deep_groove(reader: &mut Reader) -> Result<Sizes, SceneError> {
     for (key, nominal, derived) in nominal_sizes {
         let nominal = nominal.unwrap_or(derived);
         let allowed = clearance.abs() + ROUNDED * ball;
-        if !((nominal - derived).abs() <= allowed) {
+        let is_near = (nominal - derived).abs() <= allowed;
+        if !is_near {
             return contradiction(
                 reader,
                 key,
