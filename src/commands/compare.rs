@@ -17,7 +17,7 @@ pub struct Arguments {
     /// The same kind of file or folder, from the program under test
     candidate: PathBuf,
     /// Tolerance class of channels that tolerances.json does not name:
-    /// f64-exact, f64-reordered or mixed
+    /// f64-exact, f64-reordered, integrated or mixed
     #[arg(long, value_parser = class)]
     class: Option<ToleranceClass>,
     /// For runs of different accuracy, instead of a class: relative tolerance, as a part of each

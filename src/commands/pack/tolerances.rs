@@ -14,8 +14,13 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Class of all packs: the same equations in double precision.
-const CLASS: ToleranceClass = ToleranceClass::F64Reordered;
+/// Class of channels without a tolerance of their own: the same equations in double precision, or by another integrator.
+fn class_of(kind: Kind) -> ToleranceClass {
+    match kind {
+        Kind::Run => ToleranceClass::Integrated,
+        Kind::Statics | Kind::Modes => ToleranceClass::F64Reordered,
+    }
+}
 
 /// Shift of the balls that shows how neighbouring runs part, rad, and the share of a channel's largest value up to
 /// which they are alike.
@@ -52,13 +57,14 @@ const TAGS: [(&str, &[&str]); 9] = [
     ("inertia", &["inertia"]),
 ];
 
-pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<Tolerances> {
+/// [`TAGS`] as a pack has them.
+pub fn tags() -> BTreeMap<String, Vec<String>> {
     let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();
-    let mut all = Tolerances {
-        class: Some(CLASS),
-        tags: TAGS.iter().map(|(tag, of)| (tag.to_string(), names(of))).collect(),
-        ..Tolerances::default()
-    };
+    TAGS.iter().map(|(tag, of)| (tag.to_string(), names(of))).collect()
+}
+
+pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<Tolerances> {
+    let mut all = Tolerances { class: Some(class_of(kind)), tags: tags(), ..Tolerances::default() };
     let scene = &solved.summary["scene"];
     let mut spread = Spread::new(kind, solved)?;
     if kind != Kind::Run {
@@ -170,7 +176,7 @@ struct Spread {
     /// First rows of tables that count; `None` for all.
     rows: Option<usize>,
     reference: tempfile::TempDir,
-    /// Largest ratio of a difference to the tolerance of [`CLASS`], and the largest difference; infinite where texts
+    /// Largest ratio of a difference to the tolerance of the class, and the largest difference; infinite where texts
     /// or numbers of entries differ.
     largest: BTreeMap<String, (String, f64, f64)>,
 }
@@ -185,8 +191,11 @@ impl Spread {
     fn add(&mut self, other: &Solved) -> Fallible<()> {
         let folder = tempfile::tempdir()?;
         lay(self.kind, other, folder.path())?;
-        let tolerances =
-            Tolerances { class: Some(CLASS), rows: self.rows, ..Tolerances::default() };
+        let tolerances = Tolerances {
+            class: Some(class_of(self.kind)),
+            rows: self.rows,
+            ..Tolerances::default()
+        };
         let options = Options { tolerances: Some(tolerances), ..Options::default() };
         for channel in compare(self.reference.path(), folder.path(), &options)?.channels {
             let found = match &channel.worst {
@@ -231,7 +240,8 @@ impl Spread {
                 "N m" => OF_SEARCH * force * length,
                 _ => continue,
             };
-            let class = CLASS.tolerance(&unit).map_or(0.0, |class| class.absolute_floor);
+            let class =
+                class_of(self.kind).tolerance(&unit).map_or(0.0, |class| class.absolute_floor);
             let own = channels.get(&name).and_then(|own| own.absolute_floor).unwrap_or(class);
             if floor > own {
                 let own = channels.entry(name).or_default();
@@ -249,7 +259,7 @@ impl Spread {
                 return None;
             }
             let mut own = ChannelTolerance::default();
-            let class = CLASS.tolerance(unit)?;
+            let class = class_of(self.kind).tolerance(unit)?;
             if difference.is_infinite() {
                 own.class = Some(ToleranceClass::Ignored);
                 own.reason = Some("it differs between runs that are next to each other".into());

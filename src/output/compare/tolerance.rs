@@ -21,6 +21,8 @@ pub enum ToleranceClass {
     F64Exact,
     /// f64 arithmetic in another order: another compiler, processor, solver or summation order.
     F64Reordered,
+    /// A run by another integrator, or by other steps.
+    Integrated,
     /// f32 in parts of the computation, f64 where it matters.
     Mixed,
     /// Not compared, and listed as such in the report.
@@ -28,9 +30,10 @@ pub enum ToleranceClass {
 }
 
 impl ToleranceClass {
-    pub const ALL: [ToleranceClass; 4] = [
+    pub const ALL: [ToleranceClass; 5] = [
         ToleranceClass::F64Exact,
         ToleranceClass::F64Reordered,
+        ToleranceClass::Integrated,
         ToleranceClass::Mixed,
         ToleranceClass::Ignored,
     ];
@@ -40,6 +43,7 @@ impl ToleranceClass {
         match self {
             ToleranceClass::F64Exact => "f64-exact",
             ToleranceClass::F64Reordered => "f64-reordered",
+            ToleranceClass::Integrated => "integrated",
             ToleranceClass::Mixed => "mixed",
             ToleranceClass::Ignored => "ignored",
         }
@@ -57,6 +61,9 @@ impl ToleranceClass {
             // 1e6 terms of a large mesh. A quantity that follows from it through a stiff contact law
             // differs by ten times as much: 1e-9.
             ToleranceClass::F64Reordered => (1e-9, 1e-10),
+            // Good integrators err by 1e-7 of a channel's scale in a run of milliseconds, and by ten times as much at
+            // the onset of a contact.
+            ToleranceClass::Integrated => (1e-5, 1e-6),
             // f32 has a relative precision of 6e-8; some hundred operations without cancellation stay within
             // 1e-5 of the channel's scale. The load's exponent 3/2 and a safety factor of ten give 1e-4.
             ToleranceClass::Mixed => (1e-4, 1e-5),
