@@ -15,8 +15,8 @@ pub struct Critical {
 
 impl RotorModel {
     /// All undamped critical speeds, ascending. Motions e^{iΩt} at spin Ω satisfy K p = Ω² A p with A = 1 − iG, a
-    /// Hermitian problem for a symmetric K, so that none is missed; [`RotorModel::with_circulation`] adds the
-    /// skew-symmetric part of K. Rigid modes z without stiffness follow so that their load vanishes,
+    /// Hermitian problem for a symmetric K, so that none is missed; the skew-symmetric part of K
+    /// is added afterwards. Rigid modes z without stiffness follow so that their load vanishes,
     /// A_zz p_z = −A_zb p_b, and leave A_bb − A_bz A_zz⁻¹ A_zb for the others.
     ///
     /// # Errors
