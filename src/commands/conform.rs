@@ -4,10 +4,10 @@ use super::{CommandResult, Outcome, print};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::compare::{Options, compare, report};
 use bearing_dynamics::output::json;
-use bearing_dynamics::output::pack::{MANIFEST, Manifest, RESOLVED, verify_pack};
+use bearing_dynamics::output::pack::{About, MANIFEST, Manifest, RESOLVED, verify_pack};
 use bearing_dynamics::output::results::pretty;
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -50,17 +50,44 @@ pub struct Arguments {
     fresh: bool,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Status {
+    Passed,
+    Failed,
+    #[serde(rename = "not claimed")]
+    NotClaimed,
+    #[serde(rename = "timed out")]
+    TimedOut,
+}
+
+impl Status {
+    const ALL: [(Status, &str); 4] = [
+        (Status::Passed, "passed"),
+        (Status::Failed, "failed"),
+        (Status::NotClaimed, "not claimed"),
+        (Status::TimedOut, "timed out"),
+    ];
+
+    fn name(self) -> &'static str {
+        Status::ALL[self as usize].1
+    }
+}
+
 /// A pack and what became of it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Verdict {
     name: String,
-    manifest: Manifest,
-    /// `passed`, `failed`, `not claimed`, `timed out`.
-    status: String,
+    about: About,
+    status: Status,
     /// First difference, or what the program said.
     says: String,
+    /// Tags of which the program has no channels.
     unclaimed: Vec<String>,
     /// Wall time of the program and of this one, s.
     seconds: [f64; 2],
+    /// Hash of the pack and of the command.
+    key: String,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
@@ -77,7 +104,8 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let verdicts: Result<Vec<Verdict>, String> = pool.install(|| {
         let each = packs.into_par_iter();
         each.map(|(name, manifest)| {
-            let verdict = judge(arguments, &name, manifest).map_err(|e| format!("{name}: {e}"))?;
+            let verdict =
+                judge(arguments, &name, manifest.about).map_err(|e| format!("{name}: {e}"))?;
             print(&line(&verdict)).map_err(|error| error.to_string())?;
             Ok(verdict)
         })
@@ -88,10 +116,10 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     print(&format!("\n{text}"))?;
     let report = arguments.out.join("report.md");
     write_atomic(&report, page(arguments, &verdicts, &text).as_bytes())?;
-    let all: Vec<Value> = verdicts.iter().map(as_json).collect();
-    write_atomic(&arguments.out.join("results.json"), pretty(&json!(all)).as_bytes())?;
+    let all = pretty(&serde_json::to_value(&verdicts)?);
+    write_atomic(&arguments.out.join("results.json"), all.as_bytes())?;
     print(&format!("wrote results.json and report.md to {}\n", arguments.out.display()))?;
-    let wrong = |of: &Verdict| of.status == "failed" || of.status == "timed out";
+    let wrong = |of: &Verdict| matches!(of.status, Status::Failed | Status::TimedOut);
     Ok(if verdicts.iter().any(wrong) { Outcome::Different } else { Outcome::Done })
 }
 
@@ -121,38 +149,30 @@ fn packs(arguments: &Arguments) -> Result<Vec<(String, Manifest)>, Box<dyn Error
 }
 
 /// Runs the program on a pack, or takes what an earlier command found.
-fn judge(arguments: &Arguments, name: &str, manifest: Manifest) -> Result<Verdict, Box<dyn Error>> {
+fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box<dyn Error>> {
     let pack = arguments.set.join(name);
     let folder = arguments.out.join(name);
     let path = folder.join("verdict.json");
     let key = key(arguments, &pack)?;
-    if !arguments.fresh
-        && let Ok(known) = json::read(&path)
-        && known["key"] == json!(key)
-    {
-        let text = |part: &str| known[part].as_str().unwrap_or_default().to_string();
-        let list = known["unclaimed"].as_array().into_iter().flatten();
-        let unclaimed = list.filter_map(|tag| tag.as_str().map(str::to_string)).collect();
-        let seconds = [0, 1].map(|i| known["seconds"][i].as_f64().unwrap_or(0.0));
-        let (status, says) = (text("status"), text("says"));
-        return Ok(Verdict { name: name.into(), manifest, status, says, unclaimed, seconds });
+    let known = std::fs::read(&path).ok().filter(|_| !arguments.fresh);
+    let known: Option<Verdict> = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    if let Some(known) = known.filter(|known| known.key == key) {
+        return Ok(known);
     }
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder)?;
-    let timeout = Duration::from_secs_f64(arguments.timeout);
-    let own =
-        format!("'{}' {{kind}} {{resolved}} --out {{out}}", std::env::current_exe()?.display());
-    let ours = folder.join("ours");
-    let [found, reference] = [(&arguments.with, folder.join("out")), (&own, ours.clone())]
-        .map(|(command, out)| execute(command, &pack, &manifest.about.kind, &out, timeout));
-    let (found, reference) = (found?, reference?);
-    let _ = std::fs::remove_dir_all(ours);
-    let (status, says, unclaimed) = verdict(&pack, &manifest, &folder.join("out"), &found)?;
-    let seconds = [found.seconds, reference.seconds];
-    let verdict = Verdict { name: name.into(), manifest, status, says, unclaimed, seconds };
-    let mut known = as_json(&verdict);
-    known["key"] = json!(key);
-    write_atomic(&path, pretty(&known).as_bytes())?;
+    let timeout = Duration::try_from_secs_f64(arguments.timeout)
+        .map_err(|_| format!("--timeout {}: allowed are seconds from 0", arguments.timeout))?;
+    let run =
+        |command: &str, out: &str| execute(command, &pack, &about.kind, &folder.join(out), timeout);
+    let found = run(&arguments.with, "out")?;
+    let own = std::env::current_exe()?;
+    let ours = run(&format!("'{}' {{kind}} {{resolved}} --out {{out}}", own.display()), "ours")?;
+    let _ = std::fs::remove_dir_all(folder.join("ours"));
+    let (status, says, unclaimed) = verdict(&pack, &about.kind, &folder.join("out"), &found)?;
+    let seconds = [found.seconds, ours.seconds];
+    let verdict = Verdict { name: name.into(), about, status, says, unclaimed, seconds, key };
+    write_atomic(&path, pretty(&serde_json::to_value(&verdict)?).as_bytes())?;
     Ok(verdict)
 }
 
@@ -182,32 +202,32 @@ fn execute(
     let quoted = |path: &Path| format!("'{}'", path.display());
     let scene = ["scene.toml", "scene.json"].map(|name| pack.join(name));
     let scene = scene.iter().find(|path| path.exists()).cloned().unwrap_or_default();
-    // A scene that is refused has no resolved form.
-    let resolved = if kind == "refused" { scene.clone() } else { pack.join(RESOLVED) };
-    let word = if kind == "refused" { "check" } else { kind };
-    let mut line = command
+    // A scene that is not valid has no resolved form, and is refused by any command.
+    let refused = kind == "refused";
+    let (resolved, kind) =
+        if refused { (scene.clone(), "statics") } else { (pack.join(RESOLVED), kind) };
+    let line = command
         .replace("{resolved}", &quoted(&resolved))
         .replace("{scene}", &quoted(&scene))
-        .replace("{kind}", word);
-    line = match kind {
-        "refused" => line.replace("--out {out}", "").replace("{out}", &quoted(out)),
-        _ => line.replace("{out}", &quoted(out)),
-    };
+        .replace("{kind}", kind)
+        .replace("{out}", &quoted(out));
     let log = out.with_extension("log");
     let file = std::fs::File::create(&log)?;
     let start = Instant::now();
-    let mut child = Command::new("sh")
-        .args(["-c", &line])
-        .stdin(Stdio::null())
-        .stdout(file.try_clone()?)
-        .stderr(file)
-        .spawn()?;
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &line]).stdin(Stdio::null()).stdout(file.try_clone()?).stderr(file);
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut shell, 0);
+    let mut child = shell.spawn()?;
     let (code, late) = loop {
         if let Some(status) = child.try_wait()? {
             break (status.code(), false);
         }
         if start.elapsed() > timeout {
-            child.kill()?;
+            // The shell is the first of its group; what it has started ends with it.
+            let group = format!("-{}", child.id());
+            let _ = Command::new("kill").args(["-KILL", "--", &group]).status();
+            let _ = child.kill();
             child.wait()?;
             break (None, true);
         }
@@ -221,52 +241,53 @@ fn execute(
 /// Status, first difference, and tags that are not claimed.
 fn verdict(
     pack: &Path,
-    manifest: &Manifest,
+    kind: &str,
     out: &Path,
     found: &Executed,
-) -> Result<(String, String, Vec<String>), Box<dyn Error>> {
+) -> Result<(Status, String, Vec<String>), Box<dyn Error>> {
     let last = found.said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or_default();
-    let with = |status: &str, says: String| Ok((status.to_string(), says, Vec::new()));
+    let with = |status: Status, says: String| Ok((status, says, Vec::new()));
     if found.late {
-        return with("timed out", format!("after {:.0} s", found.seconds));
+        return with(Status::TimedOut, format!("after {:.0} s", found.seconds));
     }
     if found.code == Some(NOT_CLAIMED) {
-        return with("not claimed", last.into());
+        return with(Status::NotClaimed, last.into());
     }
-    if manifest.about.kind == "refused" {
-        let expected = json::read(&pack.join("summary.json"))?;
-        let key = expected["refused"]["key"].as_str().unwrap_or_default().to_string();
-        let line = expected["refused"]["line"].as_u64().map(|line| format!(":{line}"));
-        let named = found.said.contains(&key);
+    if kind == "refused" {
+        let refused = &json::read(&pack.join("summary.json"))?["refused"];
+        let key = refused["key"].as_str().unwrap_or_default();
+        let line = refused["line"].as_u64().map(|line| format!(":{line}"));
         let placed = line.is_none_or(|line| found.said.contains(&line));
-        return match (found.code == Some(REFUSED), named, placed) {
-            (true, true, true) => with("passed", String::new()),
-            (false, ..) => {
-                with("failed", format!("exit code {:?} for a scene that is not valid", found.code))
-            }
-            (true, false, _) => with("failed", format!("the message does not name {key}: {last}")),
-            (true, true, false) => {
-                with("failed", format!("the message does not name the line: {last}"))
+        if found.code != Some(REFUSED) {
+            let says = format!("exit code {:?} for a scene that is not valid", found.code);
+            return with(Status::Failed, says);
+        }
+        return match (found.said.contains(key), placed) {
+            (true, true) => with(Status::Passed, String::new()),
+            (false, _) => with(Status::Failed, format!("the message does not name {key}: {last}")),
+            (true, false) => {
+                with(Status::Failed, format!("the message does not name the line: {last}"))
             }
         };
     }
     if found.code != Some(0) {
-        return with("failed", format!("exit code {:?}: {last}", found.code));
+        return with(Status::Failed, format!("exit code {:?}: {last}", found.code));
     }
     match compare(pack, out, &Options::default()) {
-        Err(error) => with("failed", error.to_string()),
-        Ok(compared) if compared.equal => Ok(("passed".into(), String::new(), compared.unclaimed)),
+        Err(error) => with(Status::Failed, error.to_string()),
+        Ok(compared) if compared.equal => Ok((Status::Passed, String::new(), compared.unclaimed)),
         Ok(compared) => {
             let text = report(&compared);
             let lines: Vec<&str> = text.lines().skip(1).take(2).map(str::trim).collect();
-            Ok(("failed".into(), lines.join(": "), compared.unclaimed))
+            Ok((Status::Failed, lines.join(": "), compared.unclaimed))
         }
     }
 }
 
 fn line(of: &Verdict) -> String {
     let [own, ours] = of.seconds;
-    let mut text = format!("{:<12} {:<40} {own:>9.3} s, ours {ours:.3} s", of.status, of.name);
+    let mut text =
+        format!("{:<12} {:<40} {own:>9.3} s, ours {ours:.3} s", of.status.name(), of.name);
     if !of.unclaimed.is_empty() {
         let _ = write!(text, "; without {}", of.unclaimed.join(", "));
     }
@@ -276,37 +297,23 @@ fn line(of: &Verdict) -> String {
     text + "\n"
 }
 
-fn as_json(of: &Verdict) -> Value {
-    json!({
-        "name": of.name,
-        "about": of.manifest.about,
-        "status": of.status,
-        "says": of.says,
-        "unclaimed": of.unclaimed,
-        "seconds": of.seconds,
-    })
-}
-
 /// Counts by level and by tag.
 fn table(verdicts: &[Verdict], elapsed: Duration) -> String {
-    const STATUS: [&str; 4] = ["passed", "failed", "not claimed", "timed out"];
     let mut rows: BTreeMap<String, ([usize; 4], [f64; 2])> = BTreeMap::new();
     for of in verdicts {
-        let about = &of.manifest.about;
+        let about = &of.about;
         let tags = about.tags.iter().map(|tag| format!("tag {tag}"));
         let groups = [format!("level {}", about.level), "~ all".into()].into_iter().chain(tags);
         for group in groups {
             let (counts, seconds) = rows.entry(group).or_default();
-            if let Some(at) = STATUS.iter().position(|status| *status == of.status) {
-                counts[at] += 1;
-            }
+            counts[of.status as usize] += 1;
             for (sum, own) in seconds.iter_mut().zip(of.seconds) {
                 *sum += own;
             }
         }
     }
     let mut text = format!("{:<28}", "");
-    STATUS.iter().for_each(|status| text += &format!("{status:>12}"));
+    Status::ALL.iter().for_each(|(_, name)| text += &format!("{name:>12}"));
     text += &format!("{:>12}{:>12}\n", "time, s", "ours, s");
     for (group, (counts, [own, ours])) in rows {
         let _ = write!(text, "{:<28}", group.trim_start_matches("~ "));
@@ -326,13 +333,13 @@ fn page(arguments: &Arguments, verdicts: &[Verdict], table: &str) -> String {
         arguments.with,
         verdicts.len()
     );
-    let missed: Vec<&Verdict> = verdicts.iter().filter(|of| of.status != "passed").collect();
+    let missed: Vec<&Verdict> = verdicts.iter().filter(|of| of.status != Status::Passed).collect();
     if !missed.is_empty() {
         text +=
             "\n## Not passed\n\n| Pack | Status | First difference or reason |\n|---|---|---|\n";
         for of in missed {
             let says = of.says.replace('|', "\\|");
-            let _ = writeln!(text, "| {} | {} | {says} |", of.name, of.status);
+            let _ = writeln!(text, "| {} | {} | {says} |", of.name, of.status.name());
         }
     }
     text

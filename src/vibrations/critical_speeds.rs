@@ -1,6 +1,6 @@
 //! Critical speeds: whirl with the frequency of the spin.
 
-use crate::vibrations::rotor::{RotorError, RotorModel};
+use crate::vibrations::rotor::{RotorError, RotorModel, circulation};
 use crate::vibrations::whirl::Whirl;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -21,7 +21,7 @@ impl RotorModel {
     ///
     /// # Errors
     ///
-    /// A shaft without any stiffness; a free one with equal moments of inertia about and across its axis, which whirls
+    /// A shaft without any stiffness; a motion with cross-coupled stiffness alone; a free shaft with equal moments of inertia about and across its axis, which whirls
     /// once a turn at every speed.
     pub fn critical_speeds(&self) -> Result<Vec<Critical>, RotorError> {
         Ok(self.criticals()?.0)
@@ -30,9 +30,12 @@ impl RotorModel {
     /// Critical speeds, and the number of additional ones if rigid modes had a small stiffness: these would be the
     /// lowest.
     pub(crate) fn criticals(&self) -> Result<(Vec<Critical>, usize), RotorError> {
-        let rigid = self.natural.iter().filter(|&&natural| natural == 0.0).count();
+        let rigid = self.rigid();
         let modes = self.natural.len();
         let held = modes - rigid;
+        if rigid > 0 && self.stiffness.rows(0, rigid).amax() > 0.0 {
+            return Err(RotorError::OnlyCoupled);
+        }
         if held == 0 {
             return Err(RotorError::Unheld);
         }
@@ -74,8 +77,7 @@ impl RotorModel {
             modal.unscale_mut(norm);
             found.push(Critical { speed, whirl: self.motion(Complex::new(0.0, speed), modal) });
         }
-        let skew = &self.stiffness - self.stiffness.transpose();
-        if skew.amax() > CIRCULATES * self.stiffness.amax() {
+        if circulation(&self.stiffness).is_some() {
             found = self.with_circulation(found)?;
         }
         found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
@@ -114,8 +116,6 @@ impl RotorModel {
     }
 }
 
-/// Skew-symmetric stiffness below this fraction of the largest stiffness is rounding.
-const CIRCULATES: f64 = 1e-12;
 /// Relative distance of frequency and speed at a crossing, and secants after which there is none: 5 are usual.
 const CROSSES: f64 = 1e-10;
 const SECANTS: usize = 30;

@@ -34,6 +34,11 @@ pub enum RotorError {
          frequency of rotation at every speed, so that there is no critical speed"
     )]
     Sphere,
+    #[error(
+        "a cross-coupled spring (`yz`, `zy`) acts on a motion without stiffness of its own. Hint: read the critical speeds from \
+         the crossings with 1X in the Campbell diagram, or give the spring a small stiffness along both y and z"
+    )]
+    OnlyCoupled,
 }
 
 /// Small motions about an equilibrium, M q̈ + (C + Ω G) q̇ + (K + Ω S) q = loads. SI units.
@@ -109,10 +114,14 @@ impl RotorModel {
             vibrations;
         let project = |matrix: &DMatrix<f64>| basis.transpose() * matrix * &basis;
         let mut modal_stiffness = project(stiffness);
+        let skew = circulation(&modal_stiffness);
         for rigid in (0..natural.len()).filter(|&i| natural[i] == 0.0) {
-            // Rounding that would oscillate.
-            modal_stiffness.row_mut(rigid).fill(0.0);
-            modal_stiffness.column_mut(rigid).fill(0.0);
+            // Rounding that would oscillate. A cross-coupled spring may act on a motion without stiffness of its own.
+            for other in 0..natural.len() {
+                let coupled = skew.as_ref().map_or(0.0, |skew| skew[(rigid, other)]);
+                modal_stiffness[(rigid, other)] = coupled;
+                modal_stiffness[(other, rigid)] = -coupled;
+            }
         }
         let mut turned = DMatrix::zeros(basis.nrows(), basis.ncols());
         for &[first, second] in pairs {
@@ -214,10 +223,15 @@ impl RotorModel {
         })
     }
 
-    /// Returns whether a lateral motion has no stiffness.
+    /// Number of rigid modes, the first ones.
+    pub(crate) fn rigid(&self) -> usize {
+        self.natural.iter().take_while(|&&natural| natural == 0.0).count()
+    }
+
+    /// Returns whether a lateral motion has no stiffness, nor any that is cross-coupled.
     pub fn is_loose(&self) -> bool {
-        let rigid = self.natural.iter().take_while(|&&natural| natural == 0.0).count();
-        self.quarter_turn.columns(0, rigid).amax() > 0.01
+        let lateral = |&mode: &usize| self.quarter_turn.column(mode).amax() > 0.01;
+        (0..self.rigid()).filter(lateral).any(|mode| self.stiffness.row(mode).amax() == 0.0)
     }
 
     /// Index of the station at a position (m), if there is one.
@@ -225,6 +239,15 @@ impl RotorModel {
         station_at(&self.stations, at)
     }
 }
+
+/// Skew-symmetric part of a stiffness; `None` if it is rounding.
+pub(crate) fn circulation(stiffness: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let skew = (stiffness - stiffness.transpose()) * 0.5;
+    (skew.amax() > CIRCULATES * stiffness.amax()).then_some(skew)
+}
+
+/// Skew-symmetric stiffness below this fraction of the largest stiffness is rounding.
+const CIRCULATES: f64 = 1e-12;
 
 /// Basis of unit modal mass, and its frequencies at rest, rad/s: the lowest modes, and static corrections for
 /// gyroscopic moments and dashpots of the lowest of these and for forces of `relaxing` springs, to which modes alone

@@ -74,6 +74,7 @@ mod solid_command_resume;
 mod solid_decks;
 mod sweep_of_runs;
 mod sweep_resume;
+mod sweep_shards;
 mod turning_springs;
 mod warnings;
 mod whirl_laws;

@@ -143,28 +143,3 @@ fn a_point_that_fails_is_listed_and_the_others_go_on() {
     assert!(said.starts_with("the earlier results in "), "{said}");
     assert!(!Path::new(&out).join("point-1").exists());
 }
-
-#[test]
-fn shards_of_runs_make_the_table_of_the_whole() {
-    let root = tempdir().unwrap();
-    let path = write(
-        root.path(),
-        "study.toml",
-        &format!(
-            "base = \"{}\"\n[numerics]\nend = \"1 ms\"\noutput_interval = \"0.05 ms\"\n[output]\nplots = []\n\
-             window_start = \"0.5 ms\"\n[sweep]\nof = \"runs\"\n\"inner_race.x.load\" = \"200 N .. 300 N / 5\"\n",
-            scene("settling.toml")
-        ),
-    );
-    let [whole, parts] = ["whole", "parts"].map(|name| text(&root.path().join(name)));
-    done(&["sweep", &path, "--out", &whole]);
-    for shard in ["0/3", "2/3"] {
-        done(&["sweep", &path, "--out", &parts, "--shard", shard]);
-    }
-    let merge = ["sweep", &path, "--out", &parts, "--merge"];
-    assert!(refused(&merge).contains("shard 1 of 3 is missing"));
-    done(&["sweep", &path, "--out", &parts, "--shard", "1/3"]);
-    assert!(done(&merge).starts_with("5 runs merged: "));
-    let [one, other] = [&whole, &parts].map(|folder| read(&Path::new(folder).join("series.csv")));
-    assert!(one == other && one.lines().count() == 6, "{one}\n{other}");
-}

@@ -1,8 +1,11 @@
 //! Equilibria and short runs of many rigid ball bearings at once.
 #![forbid(unsafe_code)]
+// Rows and columns of small matrices are indices, as in the formulas.
+#![allow(clippy::needless_range_loop)]
 
 mod batch;
 mod conform;
+mod first_search;
 mod lanes;
 mod motion;
 mod scene;

@@ -9,12 +9,10 @@ use super::sweep::housings::{mesh_files, solid_mesh_files};
 use super::{CommandResult, Outcome, print};
 use bearing_dynamics::output::pack::{About, PackInput, refuse_foreign_files, write_pack};
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
-use solved::Solved;
+use solved::{Kind, Solved};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-
-pub use solved::Kind;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 

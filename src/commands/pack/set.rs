@@ -65,10 +65,10 @@ pub fn read(path: &Path) -> Fallible<Option<Cases>> {
 
 /// Writes all packs, each in a folder of its name.
 pub fn write(cases: &Cases, list: &Path, folder: &Path) -> CommandResult {
-    let beside = list.parent().unwrap_or(Path::new("."));
+    let list_folder = list.parent().unwrap_or(Path::new("."));
     let mut failed = Vec::new();
     for case in &cases.case {
-        match write_case(case, beside, &folder.join(&case.name)) {
+        match write_case(case, list_folder, &folder.join(&case.name)) {
             Ok(count) => print(&format!("{}: {count} files\n", case.name))?,
             Err(error) => failed.push(format!("{}: {error}", case.name)),
         }
@@ -80,9 +80,9 @@ pub fn write(cases: &Cases, list: &Path, folder: &Path) -> CommandResult {
     }
 }
 
-fn write_case(case: &Case, beside: &Path, folder: &Path) -> Fallible<usize> {
+fn write_case(case: &Case, list_folder: &Path, folder: &Path) -> Fallible<usize> {
     let folder = claimed(folder, Writes::Pack)?;
-    let scene = beside.join(&case.scene);
+    let scene = list_folder.join(&case.scene);
     let about = About {
         kind: case.of.clone(),
         tags: case.tags.clone(),

@@ -54,13 +54,13 @@ impl Solved {
 
     /// The same for a scene as JSON, with the files that it refers to.
     pub fn again(kind: Kind, scene: &Value, files: &[(String, Vec<u8>)]) -> Fallible<Solved> {
-        let beside = tempfile::tempdir()?;
+        let copy = tempfile::tempdir()?;
         for (name, content) in files {
-            let path = beside.path().join(name);
+            let path = copy.path().join(name);
             path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
             std::fs::write(path, content)?;
         }
-        let path = beside.path().join("scene.json");
+        let path = copy.path().join("scene.json");
         std::fs::write(&path, scene.to_string())?;
         Solved::of(kind, &path, &[])
     }

@@ -112,26 +112,26 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     Ok(all)
 }
 
-/// The scene with half the step, or a tenth of the accuracy; `None` without steps.
+/// The scene with half the steps, or a tenth of the accuracy; `None` without steps.
 fn finer(scene: &Value) -> Option<Value> {
-    const STEPS: [(&str, f64); 5] = [
-        ("/numerics/step", 0.5),
-        ("/numerics/step_fraction", 0.5),
-        ("/numerics/accuracy", 0.1),
-        ("/housing/step_fraction", 0.5),
-        ("/solid/step_fraction", 0.5),
-    ];
-    let mut finer = scene.clone();
-    let mut any = false;
-    for (path, factor) in STEPS {
-        if let Some(step) = finer.pointer_mut(path)
-            && let Some(value) = step.as_f64()
-        {
-            *step = (factor * value).into();
-            any = true;
+    const STEPS: [(&str, f64); 4] =
+        [("step", 0.5), ("step_fraction", 0.5), ("coupling_phase", 0.5), ("accuracy", 0.1)];
+    fn refine(value: &mut Value) -> bool {
+        let Some(table) = value.as_object_mut() else { return false };
+        let mut any = false;
+        for (key, value) in table {
+            let factor = STEPS.iter().find(|(name, _)| name == key).map(|(_, factor)| factor);
+            match (factor, value.as_f64()) {
+                (Some(factor), Some(step)) => (*value, any) = ((factor * step).into(), true),
+                _ => any |= refine(value),
+            }
         }
+        any
     }
-    any.then_some(finer)
+    let mut finer = scene.clone();
+    let tables = ["numerics", "housing", "solid"];
+    let refined = tables.map(|table| finer.get_mut(table).is_some_and(refine));
+    refined.contains(&true).then_some(finer)
 }
 
 /// The scene with the balls of all bearings shifted; `None` without bearings.
@@ -165,9 +165,8 @@ fn rows_alike(one: &Solved, other: &Solved) -> Fallible<Option<usize>> {
     }
     let options =
         Options { given: Some(given), tolerances: Some(tolerances), ..Options::default() };
-    let Some(first) = compare(&one, &other, &options)?.first_divergence else { return Ok(None) };
-    let row = first.place.strip_prefix("row ").and_then(|rest| rest.split(' ').next());
-    Ok(Some(row.and_then(|row| row.parse::<usize>().ok()).map_or(0, |row| row - 1)))
+    let first = compare(&one, &other, &options)?.first_divergence;
+    Ok(first.map(|first| first.row.saturating_sub(1)))
 }
 
 /// Largest differences to other results, channel by channel.
@@ -200,8 +199,8 @@ impl Spread {
         for channel in compare(self.reference.path(), folder.path(), &options)?.channels {
             let found = match &channel.worst {
                 Some(worst) => (worst.ratio, worst.difference),
-                None if channel.differing > 0 => (f64::INFINITY, f64::INFINITY),
-                None => continue,
+                None if channel.differing == 0 => continue,
+                None => (f64::INFINITY, f64::INFINITY),
             };
             let entry = self.largest.entry(channel.channel).or_insert((channel.unit, 0.0, 0.0));
             (entry.1, entry.2) = (entry.1.max(found.0), entry.2.max(found.1));

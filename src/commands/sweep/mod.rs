@@ -67,6 +67,13 @@ pub struct Arguments {
     fresh: bool,
 }
 
+impl Arguments {
+    /// The part of the points that is solved; the whole to merge its parts.
+    fn shard(&self) -> Result<Shard, Box<dyn Error>> {
+        if self.merge { Ok(Shard::WHOLE) } else { Shard::of(self.shard.as_deref()) }
+    }
+}
+
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Of {
     Statics,
@@ -89,7 +96,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     }
     // A scene that cannot be solved at all is said before anything is written.
     grid.check(&document)?;
-    let shard = if arguments.merge { Shard::WHOLE } else { Shard::of(arguments.shard.as_deref())? };
+    let shard = arguments.shard()?;
     let folder = claimed(&shard.folder(&sweep_folder(arguments)), Writes::Sweep)?;
     let first = grid.scene(&document, 0);
     let meshes = first.as_ref().map_or(Ok(Vec::new()), housings::mesh_files)?;
@@ -145,7 +152,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         )
         .into());
     }
-    let note = if resumed > 0 { format!(" ({resumed} resumed)") } else { String::new() };
+    let note = match (arguments.merge, resumed) {
+        (true, _) => " (merged)".to_string(),
+        (false, 0) => String::new(),
+        (false, resumed) => format!(" ({resumed} resumed)"),
+    };
     print(&format!(
         "{points} points{note} in {seconds:.2} s on {threads} thread{}: {}\n",
         if threads == 1 { "" } else { "s" },

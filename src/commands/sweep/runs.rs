@@ -5,7 +5,7 @@
 
 use super::grid::Grid;
 use super::housings::{mesh_files, solid_mesh_files};
-use super::shard::{self, Shard};
+use super::shard;
 use super::{Arguments, point, progress_bar, report, sweep_folder, table};
 use crate::commands::earlier::{Writes, claimed, remove_earlier};
 use crate::commands::run::{End, check_end, run_silently};
@@ -39,7 +39,7 @@ pub fn run(
         Ok(subject)
     };
     grid.check_any(|point| subject(point).map(|_| ()))?;
-    let shard = if arguments.merge { Shard::WHOLE } else { Shard::of(arguments.shard.as_deref())? };
+    let shard = arguments.shard()?;
     let folder = claimed(&shard.folder(&sweep_folder(arguments)), Writes::Sweep)?;
     let meshes = match subject(0) {
         Ok(Subject::Assembly(scene)) => mesh_files(&scene)?,
@@ -76,10 +76,7 @@ pub fn run(
     let (runs, failures) = sorted(ran, grid);
     let done = runs.len() + failures.len();
     ensemble::write(&folder, &point::start_of_columns(grid), &runs)?;
-    let mut record = report::started(document, grid, of);
-    record["complete"] = json!(done == own.len());
-    record["failures"] = report::failures(grid, &failures);
-    report::write_record(&folder, &record)?;
+    write_record(&folder, (document, grid, of), &failures, done == own.len())?;
     if done < own.len() {
         return Err(format!(
             "interrupted after {done} of {} points, kept in {}; the same command resumes",
@@ -122,6 +119,18 @@ fn sorted(ran: BTreeMap<usize, Ran>, grid: &Grid) -> (Vec<ensemble::Run>, BTreeM
     (runs, failures)
 }
 
+fn write_record(
+    folder: &Path,
+    (document, grid, of): (&Document, &Grid, (&str, &str)),
+    failures: &BTreeMap<usize, String>,
+    complete: bool,
+) -> Result<(), Box<dyn Error>> {
+    let mut record = report::started(document, grid, of);
+    record["complete"] = json!(complete);
+    record["failures"] = report::failures(grid, failures);
+    Ok(report::write_record(folder, &record)?)
+}
+
 /// The table of the runs of all shards.
 fn merge(folder: &Path, document: &Document, grid: &Grid, of: (&str, &str)) -> CommandResult {
     let mut ran: BTreeMap<usize, Ran> = BTreeMap::new();
@@ -144,7 +153,7 @@ fn merge(folder: &Path, document: &Document, grid: &Grid, of: (&str, &str)) -> C
     shard::check_points(&points, grid)?;
     let (runs, failures) = sorted(ran, grid);
     ensemble::write(folder, &point::start_of_columns(grid), &runs)?;
-    report::write_record(folder, &shard::record(document, grid, of, &failures))?;
+    write_record(folder, (document, grid, of), &failures, true)?;
     print(&format!("{} runs merged: {}\n", runs.len(), folder.join("series.csv").display()))?;
     Ok(Outcome::Done)
 }

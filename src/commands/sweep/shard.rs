@@ -2,9 +2,7 @@
 //! folder of its own in that of the sweep.
 
 use super::grid::Grid;
-use super::report;
 use bearing_dynamics::output::json;
-use bearing_dynamics::scene::Document;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -141,17 +139,4 @@ pub fn check_points(points: &[usize], grid: &Grid) -> Result<(), Box<dyn Error>>
         None => Err("a shard has a point that the grid does not have".into()),
         Some(point) => Err(format!("point {point} is in no shard").into()),
     }
-}
-
-/// Record of the merged sweep: complete.
-pub fn record(
-    document: &Document,
-    grid: &Grid,
-    (of, hash): (&str, &str),
-    missed: &BTreeMap<usize, String>,
-) -> Value {
-    let mut record = report::started(document, grid, (of, hash));
-    record["complete"] = Value::Bool(true);
-    record["failures"] = report::failures(grid, missed);
-    record
 }

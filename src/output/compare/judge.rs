@@ -191,6 +191,7 @@ impl<'a> Judge<'a> {
                 file: self.file.clone(),
                 channel: channel.to_string(),
                 unit: unit.to_string(),
+                row: order.0,
                 place,
                 kind,
             };

@@ -151,6 +151,8 @@ pub struct Divergence {
     /// Empty for a missing file.
     pub channel: String,
     pub unit: String,
+    /// Row of a table, from 1; position in a tree.
+    pub row: usize,
     /// `row 3 (time = 0.2 s, ball 3)` in a table (rows from 1), the path in a tree; empty for a
     /// missing file or column.
     pub place: String,

@@ -85,7 +85,7 @@ pub(crate) const KEYS: &[Key] = &[
     Key::new("spring.stiffness.turn_y", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.turn_z", TILT_FOUNDATION, NO_ROTATIONAL_SPRING, "Rotational stiffness about Z of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.stiffness.yz", CROSS, NO_SPRING, "Cross-coupled stiffness: force along Y per displacement along Z, F_y = -K_yz z.").hint(CROSS_HINT),
-    Key::new("spring.stiffness.zy", CROSS, NO_SPRING, "Cross-coupled stiffness: force along Z per displacement along Y, F_z = -K_zy y. If it differs from `yz`, the force is circulatory: runs and `modes` have it, equilibria only the mean of both.").hint(CROSS_HINT),
+    Key::new("spring.stiffness.zy", CROSS, NO_SPRING, "Cross-coupled stiffness: force along Z per displacement along Y, F_z = -K_zy y. If it differs from `yz`, the force is circulatory: runs and `modes` have it, `statics` refuses it, and the equilibrium at the start of a run or of `modes` is that of the mean of both.").hint(CROSS_HINT),
     Key::new("spring.damping.x", DASHPOT, NO_DASHPOT, "Damping along X of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.y", DASHPOT, NO_DASHPOT, "Damping along Y of the first body.").hint(FOUNDATION_HINT),
     Key::new("spring.damping.z", DASHPOT, NO_DASHPOT, "Damping along Z of the first body.").hint(FOUNDATION_HINT),
