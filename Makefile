@@ -5,7 +5,7 @@ CARGO ?= cargo
 PACKAGES = -p bearing-dynamics -p verification
 VERIFY = $(CARGO) build --release --locked -q $(PACKAGES) --bins --test single_thread && "$${CARGO_TARGET_DIR:-target}/release/verify"
 
-.PHONY: verify verify-full test golden conformance bench pareto mutants doc lint fuzz
+.PHONY: verify verify-full test golden conformance conform bench pareto mutants doc lint fuzz
 
 ## Benchmarks of the source against independent oracles; report in target/verify.
 verify:
@@ -34,6 +34,17 @@ conformance:
 	@rm -rf $(CONFORMANCE)
 	"$${CARGO_TARGET_DIR:-target}/release/bearing" pack conformance/set.toml --out $(CONFORMANCE)
 	tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf - -C target conformance | gzip -n9 > $(CONFORMANCE).tar.gz
+
+## The form of all files of the set, and three programs on its levels 1 and 2. PYTHON needs numpy, scipy, jsonschema.
+PYTHON ?= python3
+BEARING = "$${CARGO_TARGET_DIR:-target}/release/bearing"
+ON_THE_SET = for level in 1 2; do $(BEARING) conform $(CONFORMANCE) --level $$level --jobs 2 --fresh --out target/conform/$(1)-$$level --with $(2) || exit 1; done
+conform: conformance
+	$(CARGO) build --release --locked -q --manifest-path examples/fast/Cargo.toml --target-dir target/fast
+	$(PYTHON) conformance/check_schemas.py $(CONFORMANCE) $(BEARING)
+	$(call ON_THE_SET,bearing,$(BEARING)" {kind} {resolved} --out {out}")
+	$(call ON_THE_SET,python,"$(PYTHON) conformance/example_python/candidate.py {kind} {resolved} {out}")
+	$(call ON_THE_SET,fast,"target/fast/release/fast {kind} {resolved} {out}")
 
 ## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:

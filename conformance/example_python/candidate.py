@@ -35,7 +35,7 @@ def claim(kind, scene):
     refused = [prefix + key for (prefix, keys), table in zip(known.items(), (scene, inner, outer, bearing))
                for key, item in table.items() if key not in keys.split() and item not in neutral]
     constant = [inner.get("speed"), *outer.values(), *(v for key in COORDINATES for v in inner.get(key, {}).values())]
-    reasons = {f"kind {kind}": kind not in ("statics", "run"),
+    reasons = {"a scene in TOML": not scene, f"kind {kind}": kind not in ("statics", "run"),
                "a profile over time": any(isinstance(item, dict) for item in constant)}
     if kind == "run":
         reasons |= {"traction": scene.get("traction", {}).get("law") != "none",
@@ -360,9 +360,9 @@ def motion(scene, bearing):
     y = np.concatenate([start[:5], speed[:5], 0.0 * home.ravel(), velocity.ravel()])
     small = np.repeat([1e-14, 1e-12, 1e-9, 1e-7, 1e-14, 1e-9], [3, 2, 3, 2, 3 * count, 3 * count])
     times = np.arange(round(numerics["end"] / numerics["output_interval"]) + 1) * numerics["output_interval"]
-    found = solve_ivp(rates, (0.0, times[-1]), y, "DOP853", times, rtol=1e-13, atol=small, max_step=1e-5)
     rows, turned = [], bearing.azimuth
-    for time, y in zip(found.t, found.y.T):
+    for before, time in zip([times[0], *times], times):                     # interpolated rows would be less accurate
+        y = solve_ivp(rates, (before, time), y, "DOP853", rtol=1e-13, atol=small, max_step=1e-5).y[:, -1]
         place, velocity = y[10:].reshape(2, count, 3) + [home, 0.0 * home]
         if np.min(np.linalg.norm(place - np.roll(place, 1, 0), axis=1)) < 2.0 * bearing.ball:
             raise Refused("contact between balls")
@@ -383,7 +383,7 @@ def motion(scene, bearing):
 
 
 def main(kind, resolved, out):
-    scene, out = json.loads(Path(resolved).read_text()) if kind in ("statics", "run") else {}, Path(out)
+    scene, out = {} if resolved.endswith(".toml") else json.loads(Path(resolved).read_text()), Path(out)
     claim(kind, scene)
     summary, rows = (motion if kind == "run" else statics)(scene, Bearing(kind, scene))
     out.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,9 @@
 //! Start of the search for a ball's equilibrium.
 
 use crate::members::race_position::InnerRacePosition;
-use crate::members::static_ball::{BallContacts, BallPlane, inner_centre_in_plane, plane_energy};
+use crate::members::static_ball::{
+    BallContacts, BallPlane, contacts_at, inner_centre_in_plane, plane_energy,
+};
 
 /// Point from which Newton's method starts, or `None` for a ball with room on both sides.
 ///
@@ -37,9 +39,24 @@ pub(crate) fn starting_point(
         ];
     }
     // Overlaps of balls that just touch (a transition fit without load) have random signs by rounding; a few ulps of
-    // the radius are no contact. A groove has its ball on one side only: a line towards the axis belongs to races too
-    // far apart.
-    if overlap > 16.0 * f64::EPSILON * contacts.outer.centre_radius && line[1] > 0.0 {
+    // the radius are no contact.
+    let rounding = 16.0 * f64::EPSILON * contacts.outer.centre_radius;
+    if overlap <= rounding {
+        // The inner groove of a displaced race leaves the plane of the ball: the distance to it is longer, by the
+        // square of that angle, than its part in the plane.
+        let (inner, outer) = contacts_at(plane, race, contacts, point);
+        let whole = inner.overlap + outer.overlap;
+        if whole > rounding {
+            overlap = whole;
+            let outer_distance = outer_room + overlap * contacts.outer_share;
+            point = [
+                outer_centre[0] + line[0] * outer_distance,
+                outer_centre[1] + line[1] * outer_distance,
+            ];
+        }
+    }
+    // A groove has its ball on one side only: a line towards the axis belongs to races too far apart.
+    if overlap > rounding && line[1] > 0.0 {
         if plane.is_forceless() {
             return Some(point);
         }

@@ -30,7 +30,7 @@ pub const RESOLVED: &str = "resolved.json";
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct About {
-    /// The command that gives its results: `statics`, `run`, `modes`; `refused` for a scene that is not valid.
+    /// The command that gives its results: `statics`, `run`, `modes`, `sweep`; `refused` for a scene that is not valid.
     pub kind: String,
     /// What a program needs for it.
     pub tags: Vec<String>,
@@ -115,13 +115,12 @@ const NOT_PACKED: [&str; 16] = [
     "complete",
 ];
 
-/// The parts of a summary that a pack expects.
-pub fn expected(summary: &Value) -> Value {
+/// The parts of a summary that a pack expects; a sweep has none.
+pub fn expected(summary: &Value) -> Option<Value> {
     let mut kept = summary.clone();
-    if let Some(parts) = kept.as_object_mut() {
-        parts.retain(|name, _| !NOT_PACKED.contains(&name.as_str()));
-    }
-    kept
+    let parts = kept.as_object_mut()?;
+    parts.retain(|name, _| !NOT_PACKED.contains(&name.as_str()));
+    (!parts.is_empty()).then_some(kept)
 }
 
 /// Writes the pack and returns its manifest.
@@ -129,12 +128,13 @@ pub fn expected(summary: &Value) -> Value {
 /// # Errors
 /// A folder that holds other files, a file that cannot be written.
 pub fn write_pack(folder: &Path, input: &PackInput) -> Result<Manifest, PackError> {
-    if !is_plain_name(input.scene_name) || EXPECTED.contains(&input.scene_name) {
+    let taken = |name: &str| EXPECTED.contains(&name) || name == "summary.json";
+    if !is_plain_name(input.scene_name) || taken(input.scene_name) {
         return Err(PackError::SceneName { name: input.scene_name.to_string() });
     }
     let taken = |name: &str| {
-        name == input.scene_name
-            || EXPECTED.contains(&name)
+        taken(name)
+            || name == input.scene_name
             || input.tables.iter().any(|(table, _)| table == name)
     };
     if let Some((name, _)) = input.files.iter().find(|(name, _)| !is_below(name) || taken(name)) {
@@ -147,13 +147,13 @@ pub fn write_pack(folder: &Path, input: &PackInput) -> Result<Manifest, PackErro
     // The manifest is written last: a pack without one is incomplete.
     let _ = std::fs::remove_file(folder.join(MANIFEST));
     let tolerances = serde_json::to_value(input.tolerances).expect("tolerances are plain JSON");
-    let texts = [
+    let mut texts = vec![
         (input.scene_name, input.scene_text.to_string()),
         (RESOLVED, pretty(&input.summary["scene"])),
-        ("summary.json", pretty(&expected(input.summary))),
         ("tolerances.json", pretty(&tolerances)),
         ("README.txt", readme(input)),
     ];
+    texts.extend(expected(input.summary).map(|summary| ("summary.json", pretty(&summary))));
     for (name, text) in &texts {
         write_atomic(&folder.join(name), text.as_bytes())?;
     }
@@ -168,7 +168,7 @@ pub fn write_pack(folder: &Path, input: &PackInput) -> Result<Manifest, PackErro
         write_atomic(&path, bytes)?;
     }
     let mut sha256 = BTreeMap::new();
-    for name in EXPECTED.into_iter().chain([input.scene_name]).chain(own) {
+    for name in texts.iter().map(|(name, _)| *name).chain(own) {
         sha256.insert(name.to_string(), hash(&folder.join(name))?);
     }
     let version = env!("CARGO_PKG_VERSION").to_string();
@@ -179,8 +179,8 @@ pub fn write_pack(folder: &Path, input: &PackInput) -> Result<Manifest, PackErro
     Ok(manifest)
 }
 
-/// What every pack has, besides scene and manifest.
-const EXPECTED: [&str; 4] = ["README.txt", RESOLVED, "summary.json", "tolerances.json"];
+/// What every pack has, besides scene and manifest; only a sweep has no summary.
+const EXPECTED: [&str; 3] = ["README.txt", RESOLVED, "tolerances.json"];
 
 /// Checks every file of a pack against its manifest.
 ///
@@ -263,7 +263,10 @@ pub fn refuse_foreign_files(
         return Ok(());
     }
     for name in file_names(folder)? {
-        let known = [MANIFEST, scene_name].into_iter().chain(EXPECTED).chain(files.iter().copied());
+        let known = [MANIFEST, "summary.json", scene_name]
+            .into_iter()
+            .chain(EXPECTED)
+            .chain(files.iter().copied());
         if known.into_iter().all(|known| known != name) {
             return Err(PackError::Foreign { folder: folder.to_path_buf(), found: name });
         }

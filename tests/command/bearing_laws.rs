@@ -317,3 +317,29 @@ fn loads_of_a_prescribed_position_lead_back_to_it() {
         }
     }
 }
+
+/// A ball has a load where both races squeeze it, and nowhere else, down to the last 1e-10 of a load. The inner groove
+/// of a displaced race leaves the plane of a ball; that decides for a ball on the verge of contact.
+#[test]
+fn a_ball_has_a_load_where_its_races_squeeze_it() {
+    let mut squeezed = 0;
+    for step in -20..20 {
+        let position = -38.49395525844975 - 5e-4 * f64::from(step);
+        let content = format!(
+            "[bearing]\nkind = \"deep-groove\"\nballs = 9\nball_phase = \"35.20833333333333 deg\"\n\
+             clearance = {{ radial = \"3.333333333333335 um\", through = \"outer-race\" }}\nball = {{ radius = \"3.969 mm\" }}\n\
+             inner_race = {{ radius = \"15.281 mm\", groove_radius = \"4.12776 mm\" }}\n\
+             outer_race = {{ radius = \"23.224 mm\", groove_radius = \"4.12776 mm\" }}\n[inner_race]\n\
+             x = {{ displacement = \"0 um\" }}\ny = {{ displacement = \"0.15685908301188556 um\" }}\nz = {{ displacement = \"{position} um\" }}\n\
+             tilt_y = {{ tilt = \"0 deg\" }}\ntilt_z = {{ tilt = \"0 deg\" }}\n"
+        );
+        for ball in found("statics", &content).1 {
+            let room = ball["inner_approach"] + ball["outer_approach"];
+            let loaded = ball["inner_load"] > 0.0 && ball["outer_load"] > 0.0;
+            assert_eq!(loaded, room > 1e-16, "{position}: {ball:?}");
+            squeezed += u32::from(loaded);
+        }
+    }
+    // Four balls in all of 40 positions, the ninth in some.
+    assert!((161..200).contains(&squeezed), "{squeezed}");
+}

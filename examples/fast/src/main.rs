@@ -19,6 +19,9 @@ use std::process::ExitCode;
 const USAGE: &str = "usage: fast batch BATCH.json OUT.csv | fast statics|run RESOLVED.json OUT";
 
 fn load(path: &str) -> Outcome<Value> {
+    if path.ends_with(".toml") {
+        return Err(Stop::Unclaimed("a scene in TOML".into()));
+    }
     let text = std::fs::read_to_string(path).map_err(|error| Stop::Error(format!("{path}: {error}")))?;
     serde_json::from_str(&text).map_err(|error| Stop::Error(format!("{path}: {error}")))
 }

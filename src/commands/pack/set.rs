@@ -4,11 +4,12 @@
 //! [[case]]
 //! name = "deep_groove_tilt"
 //! scene = "../scenes/deep_groove_tilt.toml"   # from the folder of the list
-//! of = "statics"                              # or run, modes, refused
+//! of = "statics"                              # or run, modes, sweep, refused
 //! set = ["bearing.balls=9"]
 //! tags = ["tilt", "hertz-fit"]
 //! level = 1
-//! expected = { "rating_life.life" = [1.2e6, 1e-3] }   # value and relative tolerance, from another source
+//! # Value and relative tolerance, from another source; entries of lists in order, from 0.
+//! expected = { "rotor.whirl.0.frequency" = [13.59, 1e-3] }
 //! generated_by = "book"
 //! ```
 
@@ -93,9 +94,12 @@ fn write_case(case: &Case, list_folder: &Path, folder: &Path) -> Fallible<usize>
         "statics" => Kind::Statics,
         "run" => Kind::Run,
         "modes" => Kind::Modes,
+        "sweep" => Kind::Sweep,
         "refused" => return write_refused(case, &scene, about, &folder),
         other => {
-            return Err(format!("of = {other:?}: allowed are statics, run, modes, refused").into());
+            return Err(
+                format!("of = {other:?}: allowed are statics, run, modes, sweep, refused").into()
+            );
         }
     };
     write_one(&scene, (kind, &case.set), about, &case.expected, &folder)
@@ -124,17 +128,29 @@ pub fn only_expected(
     expected: &BTreeMap<String, [f64; 2]>,
 ) -> Fallible<(Value, Tolerances)> {
     let mut only = json!({ "scene": summary["scene"], "kind": summary["kind"] });
-    let mut tolerances = Tolerances { tags: tags(), ..Tolerances::default() };
+    let mut tolerances = Tolerances { tags: tags(), partial: true, ..Tolerances::default() };
     for (path, [value, relative]) in expected {
         let parts: Vec<&str> = path.split('.').collect();
         let pointer = format!("/{}", parts.join("/"));
         let ours = summary.pointer(&pointer).ok_or_else(|| format!("no result {path:?}"))?;
         let mut at = &mut only;
+        let mut channel = String::new();
         for part in &parts {
-            if !at.is_object() {
-                *at = json!({});
+            if let Ok(entry) = part.parse::<usize>() {
+                if at.is_null() {
+                    *at = json!([]);
+                }
+                let list = at.as_array_mut().ok_or_else(|| format!("{path}: not a list"))?;
+                if list.len() == entry {
+                    list.push(Value::Null);
+                }
+                channel.push_str("[]");
+                at = list.get_mut(entry).ok_or_else(|| format!("{path}: entries in order"))?;
+            } else {
+                let point = if channel.is_empty() { "" } else { "." };
+                channel = format!("{channel}{point}{part}");
+                at = &mut at[*part];
             }
-            at = &mut at[*part];
         }
         *at = json!({ "value": value, "unit": ours["unit"] });
         let own = ChannelTolerance {
@@ -144,7 +160,7 @@ pub fn only_expected(
             reason: Some("what the source prints, or its accuracy".into()),
             ..ChannelTolerance::default()
         };
-        tolerances.channels.insert(path.clone(), own);
+        tolerances.channels.insert(channel, own);
     }
     Ok((only, tolerances))
 }

@@ -2,7 +2,7 @@
 
 use super::Fallible;
 use bearing_dynamics::output::json;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -12,6 +12,7 @@ pub enum Kind {
     Statics,
     Run,
     Modes,
+    Sweep,
 }
 
 impl Kind {
@@ -20,12 +21,13 @@ impl Kind {
             Kind::Statics => "statics",
             Kind::Run => "run",
             Kind::Modes => "modes",
+            Kind::Sweep => "sweep",
         }
     }
 }
 
 /// Tables that are packed. Spectra and shapes of modes are not: they have no sign or phase of their own.
-pub const TABLES: [&str; 3] = ["series.csv", "campbell.csv", "harmonic.csv"];
+pub const TABLES: [&str; 4] = ["series.csv", "campbell.csv", "harmonic.csv", "sweep.csv"];
 
 /// Summary and tables of a results folder.
 pub struct Solved {
@@ -38,17 +40,23 @@ impl Solved {
     pub fn of(kind: Kind, scene: &Path, changes: &[String]) -> Fallible<Solved> {
         let folder = tempfile::tempdir()?;
         let out = folder.path().join("results");
-        let mut command = Command::new(std::env::current_exe()?);
-        command.arg(kind.name()).arg(scene).arg("--out").arg(&out);
-        changes.iter().for_each(|change| {
-            command.arg("--set").arg(change);
-        });
-        let done = command.output()?;
-        if !done.status.success() {
-            let said = String::from_utf8_lossy(&done.stderr);
-            return Err(said.trim().trim_start_matches("bearing: ").to_string().into());
-        }
-        let summary = json::read(&out.join("summary.json"))?;
+        let scene_text = scene.to_string_lossy();
+        let solve = [kind.name(), &scene_text, "--out", &out.to_string_lossy()];
+        let summary = match kind {
+            Kind::Sweep => {
+                let checked = bearing(&["check", &scene_text, "--json"], changes)?;
+                let scene = serde_json::from_slice::<Value>(&checked)?["scene"].take();
+                if scene["sweep"]["of"] == "runs" {
+                    return Err("a sweep of runs is packed run by run, with --of run".into());
+                }
+                bearing(&solve, changes)?;
+                json!({ "scene": scene })
+            }
+            _ => {
+                bearing(&solve, changes)?;
+                json::read(&out.join("summary.json"))?
+            }
+        };
         Ok(Solved { summary, folder })
     }
 
@@ -82,4 +90,16 @@ impl Solved {
         }
         Ok(tables)
     }
+}
+
+/// Output of this program.
+fn bearing(arguments: &[&str], changes: &[String]) -> Fallible<Vec<u8>> {
+    let changes = changes.iter().flat_map(|change| ["--set", change]);
+    let all = arguments.iter().copied().chain(changes);
+    let done = Command::new(std::env::current_exe()?).args(all).output()?;
+    if !done.status.success() {
+        let said = String::from_utf8_lossy(&done.stderr);
+        return Err(said.trim().trim_start_matches("bearing: ").to_string().into());
+    }
+    Ok(done.stdout)
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 fn class_of(kind: Kind) -> ToleranceClass {
     match kind {
         Kind::Run => ToleranceClass::Integrated,
-        Kind::Statics | Kind::Modes => ToleranceClass::F64Reordered,
+        Kind::Statics | Kind::Modes | Kind::Sweep => ToleranceClass::F64Reordered,
     }
 }
 
@@ -291,7 +291,9 @@ fn largest(summary: &Value, unit: &str) -> f64 {
 
 /// What a pack would have of these results.
 fn lay(kind: Kind, solved: &Solved, folder: &Path) -> Fallible<()> {
-    std::fs::write(folder.join("summary.json"), pretty(&expected(&solved.summary)))?;
+    if let Some(summary) = expected(&solved.summary) {
+        std::fs::write(folder.join("summary.json"), pretty(&summary))?;
+    }
     for (name, content) in solved.tables(kind)? {
         std::fs::write(folder.join(name), content)?;
     }

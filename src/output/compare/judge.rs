@@ -399,14 +399,14 @@ impl<'a> Judge<'a> {
         let mut listed = HashSet::new();
         for leaf in candidate.iter().filter(|leaf| !known.contains(leaf.path.as_str())) {
             match opened.get(leaf.channel.as_str()) {
-                Some(Some((index, _))) => {
+                Some(Some((index, _))) if !self.tolerances.partial => {
                     self.channels[*index].differing += 1;
                     let order = (reference.len() + 1, 0);
                     let place = tree_label(&leaf.path);
                     let kind = DivergenceKind::OnlyInCandidate;
                     self.diverge(order, &leaf.channel, &leaf.unit, place, kind);
                 }
-                Some(None) => {}
+                Some(_) => {}
                 None if listed.insert(leaf.channel.as_str()) => {
                     self.only_in_candidate.push(format!("{}: {}", self.file, leaf.channel));
                 }

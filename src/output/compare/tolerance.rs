@@ -211,6 +211,9 @@ pub struct Tolerances {
     /// Only these first rows of tables are compared: later ones depend on the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rows: Option<usize>,
+    /// The reference has a part of the results: further entries of its lists are no difference.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub partial: bool,
 }
 
 /// A class, or numbers, or a class with some of its numbers replaced.

@@ -108,7 +108,7 @@ fn table_schema(path: &str) -> Map<String, Value> {
     }
     if path.is_empty() {
         // A bearing in a housing has both.
-        let any_of = ["bearing", "solid"].map(|part| json!({ "required": [part] }));
+        let any_of = ["bearing", "body", "solid"].map(|part| json!({ "required": [part] }));
         exclusive.push(json!({ "anyOf": any_of }));
     }
     if path == "bearing" {
@@ -193,9 +193,9 @@ fn sweep_schema() -> Value {
 fn key_or_table_schema(key: &'static Key, path: &str) -> Value {
     let mut schema = table_schema(path);
     let quantity = key_schema(key);
-    schema.insert("type".into(), json!(["string", "object"]));
+    schema.insert("type".into(), json!(["string", "number", "object"]));
     schema.insert("description".into(), quantity["description"].clone());
-    schema.insert("if".into(), json!({ "type": "string" }));
+    schema.insert("if".into(), json!({ "type": ["string", "number"] }));
     schema.insert("then".into(), json!({ "$ref": quantity["$ref"] }));
     Value::Object(schema)
 }
