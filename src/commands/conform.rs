@@ -42,7 +42,7 @@ pub struct Arguments {
     /// Longest time for one pack, s
     #[arg(long, default_value_t = 600.0)]
     timeout: f64,
-    /// Folder of results and report; packs that are done there are not run again
+    /// Folder of results and report; packs that passed there are not run again
     #[arg(long, default_value = "results/conform")]
     out: PathBuf,
     /// Run all packs again
@@ -71,6 +71,10 @@ impl Status {
 
     fn name(self) -> &'static str {
         Status::ALL[self as usize].1
+    }
+
+    fn is_failure(self) -> bool {
+        matches!(self, Status::Failed | Status::TimedOut)
     }
 }
 
@@ -119,8 +123,11 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let all = pretty(&serde_json::to_value(&verdicts)?);
     write_atomic(&arguments.out.join("results.json"), all.as_bytes())?;
     print(&format!("wrote results.json and report.md to {}\n", arguments.out.display()))?;
-    let wrong = |of: &Verdict| matches!(of.status, Status::Failed | Status::TimedOut);
-    Ok(if verdicts.iter().any(wrong) { Outcome::Different } else { Outcome::Done })
+    Ok(if verdicts.iter().any(|of| of.status.is_failure()) {
+        Outcome::Different
+    } else {
+        Outcome::Done
+    })
 }
 
 /// Names and manifests of the packs asked for.
@@ -156,7 +163,9 @@ fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box
     let key = key(arguments, &pack)?;
     let known = std::fs::read(&path).ok().filter(|_| !arguments.fresh);
     let known: Option<Verdict> = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    if let Some(known) = known.filter(|known| known.key == key) {
+    // The program behind the same command may be another by now.
+    let kept = |known: &Verdict| known.key == key && known.status == Status::Passed;
+    if let Some(known) = known.filter(kept) {
         return Ok(known);
     }
     let _ = std::fs::remove_dir_all(&folder);
@@ -166,11 +175,14 @@ fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box
     let run =
         |command: &str, out: &str| execute(command, &pack, &about.kind, &folder.join(out), timeout);
     let found = run(&arguments.with, "out")?;
-    let own = std::env::current_exe()?;
-    let ours = run(&format!("'{}' {{kind}} {{resolved}} --out {{out}}", own.display()), "ours")?;
-    let _ = std::fs::remove_dir_all(folder.join("ours"));
     let (status, says, unclaimed) = verdict(&pack, &about.kind, &folder.join("out"), &found)?;
-    let seconds = [found.seconds, ours.seconds];
+    let mut seconds = [found.seconds, 0.0];
+    if status != Status::NotClaimed {
+        let own = std::env::current_exe()?;
+        let own = format!("'{}' {{kind}} {{resolved}} --out {{out}}", own.display());
+        seconds[1] = run(&own, "ours")?.seconds;
+        let _ = std::fs::remove_dir_all(folder.join("ours"));
+    }
     let verdict = Verdict { name: name.into(), about, status, says, unclaimed, seconds, key };
     write_atomic(&path, pretty(&serde_json::to_value(&verdict)?).as_bytes())?;
     Ok(verdict)
@@ -190,6 +202,12 @@ struct Executed {
     late: bool,
     said: String,
     seconds: f64,
+}
+
+impl Executed {
+    fn code(&self) -> String {
+        self.code.map_or("none (a signal)".into(), |code| code.to_string())
+    }
 }
 
 fn execute(
@@ -256,10 +274,11 @@ fn verdict(
     if kind == "refused" {
         let refused = &json::read(&pack.join("summary.json"))?["refused"];
         let key = refused["key"].as_str().unwrap_or_default();
-        let line = refused["line"].as_u64().map(|line| format!(":{line}"));
-        let placed = line.is_none_or(|line| found.said.contains(&line));
+        let placed = refused["line"].as_u64().is_none_or(|line| {
+            [":", "line "].iter().any(|before| found.said.contains(&format!("{before}{line}")))
+        });
         if found.code != Some(REFUSED) {
-            let says = format!("exit code {:?} for a scene that is not valid", found.code);
+            let says = format!("exit code {} for a scene that is not valid", found.code());
             return with(Status::Failed, says);
         }
         return match (found.said.contains(key), placed) {
@@ -271,7 +290,7 @@ fn verdict(
         };
     }
     if found.code != Some(0) {
-        return with(Status::Failed, format!("exit code {:?}: {last}", found.code));
+        return with(Status::Failed, format!("exit code {}: {last}", found.code()));
     }
     match compare(pack, out, &Options::default()) {
         Err(error) => with(Status::Failed, error.to_string()),

@@ -1,8 +1,8 @@
 //! Positions of balls without load, which are not compared.
 //!
 //! The position of a ball that carries no load is not determined: it has clearance to both races. Its position, the
-//! gaps to both races and its contact angles are a choice of the program. They are not compared; its loads, which are
-//! zero, are.
+//! gaps to both races and its contact angles are a choice of the program. They are not compared, nor are the semi-axes
+//! and the pressure, which grow with the cube root of a load of rounding; its loads, which are zero, are.
 //!
 //! A ball with one loaded contact, under its weight for example, does not count: its position is determined.
 
@@ -10,8 +10,8 @@ use crate::output::compare::channels::{Leaf, LeafValue};
 use crate::output::series::Series;
 use std::collections::HashSet;
 
-/// Channels that follow from a ball's position alone, as in `series.csv`.
-const PLACE: [&str; 7] = [
+/// Channels that follow from a ball's position alone, and those of its contact ellipses, as in `series.csv`.
+const PLACE: [&str; 13] = [
     "position_x",
     "position_y",
     "position_z",
@@ -19,10 +19,17 @@ const PLACE: [&str; 7] = [
     "inner_contact_angle",
     "outer_approach",
     "outer_contact_angle",
+    "inner_semi_major",
+    "inner_semi_minor",
+    "inner_peak_pressure",
+    "outer_semi_major",
+    "outer_semi_minor",
+    "outer_peak_pressure",
 ];
 
 /// Text of the report for the values not compared.
-pub const NOTE: &str = "position, approach and contact_angle of balls without load";
+pub const NOTE: &str =
+    "position, approach, contact_angle, semi-axes and peak_pressure of balls without load";
 
 /// For each row of a table of balls, true if the ball carries no load; `None` for other tables.
 pub fn unloaded_rows(series: &Series) -> Option<Vec<bool>> {
