@@ -43,7 +43,7 @@ impl Whirl {
         self.direction > 0.0
     }
 
-    /// "forward", "backward" or "to and fro".
+    /// "forward", "backward" or "planar".
     pub fn turns(&self) -> &'static str {
         match self.direction {
             d if d > 0.5 => "forward",

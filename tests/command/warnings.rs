@@ -224,7 +224,7 @@ fn of_pictures() {
              ball = {{ diameter = \"7.938 mm\" }}\n[inner_race]\nz = {{ load = \"{load}\" }}\n"
         )
     };
-    assert_raised("W18", "statics", &loose("-1e-4 N"), &loose("-100 N"));
+    assert_raised("W18", "statics", &loose("-1e-9 N"), &loose("-100 N"));
 }
 
 /// An outer race that follows a step of the load with a time constant of 50 ms, and one that does in a millisecond.

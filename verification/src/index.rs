@@ -296,7 +296,7 @@ fn split(claim: &str) -> Option<(&str, &str)> {
 }
 
 /// How a case settled a published number; absent where it has not run.
-fn settled(case: &CaseReport, id: &str) -> Option<Status> {
+pub fn settled(case: &CaseReport, id: &str) -> Option<Status> {
     if case.status == CaseStatus::NotRun {
         return None;
     }

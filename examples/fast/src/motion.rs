@@ -2,7 +2,7 @@
 
 use crate::lanes::{Real, add, cross, dot};
 use crate::scene::{Outcome, Run, Scene, Stop};
-use crate::statics::{Common, Equilibrium, Problem, axes, solve_lanes};
+use crate::statics::{Common, Equilibrium, Problem, solve_lanes};
 use wide::f64x8;
 
 type R = f64x8;
@@ -306,13 +306,11 @@ pub fn row(runs: &Runs, state: &State, scene: &Scene, lane: usize, time: f64, tu
     let mut row = vec![time];
     row.extend(state.0[..8].iter().map(|value| value.lane(lane)));
     row.push(scene.speed);
-    let frame = axes(scene.outer_at);
     let mut sums = [[0.0; 5]; 2];
     let mut loads = Vec::with_capacity(2 * turned.len());
     for (ball, turned) in turned.iter_mut().enumerate() {
         let [place, velocity] = state.ball(ball).map(|v| v.map(|value| value.lane(lane)));
-        let inside = |v: [f64; 3]| frame.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2]);
-        let ([_, y, z], [_, vy, vz]) = (inside([0, 1, 2].map(|i| place[i] - scene.outer_at[i])), inside(velocity));
+        let ([y, z], [_, vy, vz]) = ([1, 2].map(|i| place[i] - scene.outer_at[i]), velocity);
         let turn = std::f64::consts::TAU;
         *turned += (z.atan2(y) - *turned + 0.5 * turn).rem_euclid(turn) - 0.5 * turn;
         row.extend([*turned, (y * vz - z * vy) / (y * y + z * z)]);

@@ -180,7 +180,7 @@ pub(crate) const KEYS: &[Key] = &[
         "Diameter of the pit; at most half the ball radius.").hint(DENT_HINT).example_of("500 um"),
     quantity("bearing.dent.depth", Kind::Quantity(Length, closed(0.0, 10.0, "mm")),
         Depends("1/20 of the diameter"),
-        "Depth of the pit, whose profile is half a cosine wave; 0 for no pit.").hint(DENT_HINT).example_of("25 um"),
+        "Depth h of the pit, whose profile is h (1 + cos(2 pi r/diameter))/2; 0 for no pit.").hint(DENT_HINT).example_of("25 um"),
     quantity("bearing.dent.shoulder_height", Kind::Quantity(Length, closed(0.0, 1.0, "mm")),
         Default { value: "0 um", reason: "the source's dent has no shoulder" },
         "Height of the shoulder around the pit, whose profile is a cosine wave. With a wide shoulder and a light load, contact loads away from the dent's middle have errors up to a third.").hint(DENT_HINT).example_of("1 um"),

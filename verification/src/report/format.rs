@@ -132,9 +132,11 @@ pub fn badge(report: &Report, numbers: &Numbers) -> String {
         (false, false) => "incomplete",
     };
     format!(
-        "{verdict}; {} of {} published numbers reproduced",
-        numbers.reproduced + numbers.under_assumption,
-        numbers.printed()
+        "{verdict}; {} of {} numbers of the source reproduced, {} under assumption, {} not run",
+        numbers.reproduced,
+        numbers.printed(),
+        numbers.under_assumption,
+        numbers.not_run
     )
 }
 

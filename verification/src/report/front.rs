@@ -1,9 +1,10 @@
 //! The first pages of `report.html`: what holds and what does not, the index of the source, numbers that
 //! are not reproduced, cases that did not run, assumptions.
 
+use std::collections::BTreeSet;
 use std::fmt::{Result, Write};
 
-use crate::index::{ChapterEntries, Entry, Role};
+use crate::index::{self, ChapterEntries, Entry, Role};
 use crate::judge::{CheckReport, Status};
 use crate::report::html::{check_anchor, chip, escape, explanation, nowrap, number, prose};
 use crate::report::{CaseReport, CaseStatus, Report, format, totals};
@@ -163,8 +164,13 @@ fn write_line(out: &mut String, line: &Entry) -> Result {
 
 /// Published numbers: those that are met by case, those that are missed by cause.
 pub fn write_met_and_missed(out: &mut String, report: &Report) -> Result {
+    // A number with several checks counts once.
     let met = |case: &CaseReport| {
-        case.count(Status::Reproduced) + case.count(Status::ReproducedUnderAssumption)
+        let ids: BTreeSet<&str> =
+            case.checks.iter().filter_map(|check| check.published_id.as_deref()).collect();
+        let statuses = ids.into_iter().filter_map(|id| index::settled(case, id));
+        let agree = [Status::Reproduced, Status::ReproducedUnderAssumption];
+        statuses.filter(|status| agree.contains(status)).count()
     };
     writeln!(out, "<section><h2>What is met, and what is missed</h2><ul class=\"met\">")?;
     for case in report.cases.iter().filter(|case| met(case) > 0) {
