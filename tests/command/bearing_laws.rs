@@ -8,11 +8,11 @@ use std::f64::consts::PI;
 use std::path::Path;
 use tempfile::tempdir;
 
-const BALL: f64 = 7.938e-3;
-const CONFORMITY: [f64; 2] = [0.515, 0.525];
+pub const BALL: f64 = 7.938e-3;
+pub const CONFORMITY: [f64; 2] = [0.515, 0.525];
 
 /// With these keys of the ball, and the rest of the scene.
-fn scene(ball: &str, rest: &str) -> String {
+pub fn scene(ball: &str, rest: &str) -> String {
     let [inner, outer] = CONFORMITY;
     format!(
         "[bearing]\nkind = \"deep-groove\"\nballs = 9\nball_phase = \"7 deg\"\npitch_radius = \"19.25 mm\"\n\
@@ -39,7 +39,7 @@ fn rows(folder: &Path) -> Vec<BTreeMap<String, f64>> {
 }
 
 /// Runs a command on a scene; returns its summary and its rows.
-fn found(command: &str, content: &str) -> (Value, Vec<BTreeMap<String, f64>>) {
+pub fn found(command: &str, content: &str) -> (Value, Vec<BTreeMap<String, f64>>) {
     let root = tempdir().unwrap();
     let path = write(root.path(), "scene.toml", content);
     let out = root.path().join("out");
@@ -114,7 +114,8 @@ fn written_forces_balance_on_each_ball() {
     }
 }
 
-/// Both races turned by the same speed more: the balls roll as before, and so does their friction torque.
+/// Balls roll by the relative speed of both races: the friction torque is the power that is lost over it, the same for a
+/// speed of either race and of either sign.
 #[test]
 fn friction_torque_depends_on_the_relative_speed() {
     let torque = |inner: f64, outer: f64| {
@@ -131,14 +132,21 @@ fn friction_torque_depends_on_the_relative_speed() {
                 ),
             ),
         );
-        summary["friction"]["torque"]["value"].as_f64().unwrap()
+        let [torque, power] =
+            ["torque", "power_loss"].map(|of| summary["friction"][of]["value"].as_f64().unwrap());
+        let speed = (inner - outer).abs() * PI / 30.0;
+        // Rounding of a mean over the rows.
+        assert!((torque * speed / power - 1.0).abs() <= 1e-9, "{inner} {outer}: {torque} {power}");
+        assert!(power > 0.0, "{inner} {outer}: {power}");
+        torque
     };
     let still = torque(300.0, 0.0);
-    assert!(still > 0.0);
-    for (inner, outer) in [(400.0, 100.0), (-200.0, -500.0)] {
+    for (inner, outer) in
+        [(400.0, 100.0), (-200.0, -500.0), (-300.0, 0.0), (0.0, 300.0), (-400.0, -100.0)]
+    {
         let turning = torque(inner, outer);
         // Another way of the balls past the load.
-        assert!((turning / still - 1.0).abs() <= 0.02, "{turning} {still}");
+        assert!((turning / still - 1.0).abs() <= 0.02, "{inner} {outer}: {turning} {still}");
     }
 }
 

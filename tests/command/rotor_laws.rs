@@ -282,3 +282,104 @@ fn an_unbalance_pulls_where_its_angle_points() {
         assert!(y.hypot(z) > 1e-7 && (angle - 30.0).abs() <= 1.0, "{name}: {angle} {y} {z}");
     }
 }
+
+/// A shaft that bends, with damping in both axes and an unbalance, on springs that couple both planes: with side = 1, or its
+/// mirror image, y to −y, with side = −1.
+fn on_coupled_springs(side: f64) -> String {
+    let spring = |name: &str, at: f64| {
+        format!(
+            "[spring.{name}]\nfrom = \"ground\"\nto = \"rotor\"\nto_at = \"{at} mm\"\nfrom_at = \"{at} mm\"\n\
+             stiffness = {{ y = \"1e6 N/m\", z = \"2e6 N/m\", yz = \"{} N/m\", zy = \"{} N/m\" }}\n\
+             damping = {{ y = \"300 N s/m\", z = \"500 N s/m\", yz = \"{} N s/m\" }}\n",
+            side * 1e5,
+            side * 1e5,
+            side * 100.0
+        )
+    };
+    // Angles count from Y, which the mirror reverses.
+    let angle = 90.0 - side * 60.0;
+    format!(
+        "[body.rotor]\nx = {{ displacement = \"0 mm\" }}\nspeed = \"{} rpm\"\n[body.rotor.beam]\n\
+         segments = [{{ length = \"1 m\", outer_diameter = \"30 mm\" }}]\ninternal_damping = \"300 1/s\"\ndamping = \"20 1/s\"\n\
+         load = [{{ at = \"100 mm\", y = \"{} N\", z = \"-400 N\" }}]\nprobe = [{{ name = \"mid\", at = \"0 mm\" }}]\n\
+         unbalance = [{{ at = \"200 mm\", size = \"1e-3 kg m\", angle = \"{angle} deg\" }}]\n{}{}\
+         [numerics]\nend = \"2 ms\"\noutput_interval = \"0.1 ms\"\nstep = \"5 us\"\nstart = \"equilibrium\"\n[output]\nplots = []\n",
+        side * 3000.0,
+        side * 60.0,
+        spring("left", -500.0),
+        spring("right", 500.0)
+    )
+}
+
+/// Sign of a column in the mirror: vectors along Y and rotations about X and Z are reversed.
+fn mirror_sign(name: &str) -> f64 {
+    let rotates = ["tilt", "moment", "speed"].iter().any(|word| name.contains(word));
+    if rotates != name.ends_with('y') { -1.0 } else { 1.0 }
+}
+
+/// A number and its mirror image are equal to rounding, relative to the largest number of the column.
+fn assert_mirrored(name: &str, [found, image]: [f64; 2], size: f64) {
+    let error = (mirror_sign(name) * image - found).abs();
+    assert!(error <= 1e-9 * size + 1e-12, "{name}: {found} {image}");
+}
+
+/// A shaft that turns backwards is the mirror image of one that turns forwards, at rest and in each column of a run from
+/// its equilibrium.
+#[test]
+fn a_shaft_that_turns_backwards_is_the_mirror_image() {
+    let root = tempdir().unwrap();
+    let both = |command: &str| {
+        [1.0, -1.0].map(|side| {
+            let path = write(root.path(), "scene.toml", &on_coupled_springs(side));
+            let out = root.path().join(format!("{command} {side}"));
+            done(&[command, &path, "--out", &text(&out)]);
+            out
+        })
+    };
+    let sections = both("statics").map(|out| {
+        let summary = json(&out.join("summary.json"));
+        let mut all = summary["sections"].as_array().unwrap().clone();
+        all.push(summary["bodies"]["rotor"]["position"].clone());
+        all
+    });
+    assert!(sections[0].len() >= 4 && sections[0].len() == sections[1].len());
+    for (one, image) in sections[0].iter().zip(&sections[1]) {
+        for key in ["x", "y", "z", "tilt_y", "tilt_z"] {
+            let values = [one, image].map(|of| of[key]["value"].as_f64().unwrap());
+            assert_mirrored(key, values, values[0].abs());
+        }
+    }
+    let [mut found, mut images] = [1.0, -1.0].map(|side| whirl(&on_coupled_springs(side)));
+    assert!(found.len() >= 4 && found.len() == images.len(), "{found:?} {images:?}");
+    for modes in [&mut found, &mut images] {
+        modes.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    }
+    for (one, image) in found.iter().zip(&images) {
+        // Directions count from the sense of the speed.
+        for (one, image) in one.iter().zip(image) {
+            assert!((one - image).abs() <= 1e-6 * one.abs(), "{found:?} {images:?}");
+        }
+    }
+    let [found, images] = both("run").map(|out| {
+        let table = read(&out.join("series.csv"));
+        let rows: Vec<Vec<String>> =
+            table.lines().map(|row| row.split(',').map(String::from).collect()).collect();
+        rows
+    });
+    assert!(found[0] == images[0] && found.len() == images.len() && found.len() > 20);
+    let mut reversed = 0;
+    for (i, column) in found[0].iter().enumerate() {
+        let name = column.split(' ').next().unwrap();
+        let values = |rows: &[Vec<String>]| -> Vec<f64> {
+            rows[1..].iter().map(|row| row[i].parse().unwrap()).collect()
+        };
+        let [found, images] = [&found, &images].map(|rows| values(rows));
+        let size = found.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        reversed += usize::from(size > 1e-6 && mirror_sign(name) < 0.0);
+        for (found, image) in found.into_iter().zip(images) {
+            assert_mirrored(name, [found, image], size);
+        }
+    }
+    // Position, tilt, velocity, speed, probe and two forces.
+    assert!(reversed >= 7, "{reversed}: {:?}", found[0]);
+}

@@ -4,13 +4,18 @@ use super::run_recorder::{column, table, to_the_end};
 use crate::run_common;
 
 use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::ch2_housing::bearing::hertz::contact_ellipse;
 use bearing_dynamics::members::body::Drive;
-use bearing_dynamics::members::state::POSITION;
-use bearing_dynamics::motion::simulation::{Integrator, RunOptions, SimulationError, Stepping};
+use bearing_dynamics::members::state::{BodyState, POSITION};
+use bearing_dynamics::motion::simulation::{
+    Integrator, RunOptions, Simulation, SimulationError, Start, Stepping,
+};
 use bearing_dynamics::numeric::profile::Profile;
 use bearing_dynamics::output::session::{RunRequest, Session, SessionError, Status};
 use bearing_dynamics::output::summary::{RunReport, run_summary};
-use run_common::{frictionless, jolted, request, simulation};
+use nalgebra::Vector3;
+use run_common::{common, frictionless, jolted, request, simulation};
+use serde_json::Value;
 
 /// Every integrator, with the stepping it is used with.
 const METHODS: [(Integrator, Stepping); 3] = [
@@ -104,6 +109,147 @@ fn an_extreme_has_the_time_of_its_state() {
         // Rounding of a sum of three squares, and of the time at which a step ends.
         assert!((found.value / farthest - 1.0).abs() <= 1e-14, "{integrator:?} {found:?}");
         assert!((found.time - when).abs() <= 1e-15, "{integrator:?} {found:?} {when}");
+    }
+}
+
+/// Balls that nearly fill the bearing, under strong gravity, with a pulse of the radial load and a later one of the axial load.
+pub fn crowded() -> DynamicProblem {
+    let geometry = common::full_complement(9, 4e-6, 5e-6);
+    let conditions = common::FREE;
+    let statics = common::problem(geometry, conditions);
+    let mut problem = DynamicProblem {
+        geometry,
+        inner_contact: statics.inner_contact,
+        outer_contact: statics.outer_contact,
+        gravity: [0.0, 500.0, -2000.0],
+        ..frictionless()
+    };
+    let pulse = |peak: f64, start: f64, duration: f64| {
+        Drive::Load(Profile::HalfSine { base: 0.0, peak, start, duration })
+    };
+    problem.inner.drives[0] = pulse(-2500.0, 0.4e-3, 0.2e-3);
+    problem.inner.drives[2] = pulse(-9000.0, 0.05e-3, 0.2e-3);
+    problem.inner.drives[3] = Drive::Motion(Profile::ZERO);
+    problem.inner.drives[4] = Drive::Motion(Profile::ZERO);
+    problem
+}
+
+/// A largest value, its ball and its time, s.
+#[derive(Clone, Copy, Debug, Default)]
+struct Most(f64, usize, f64);
+
+impl Most {
+    fn take(&mut self, value: f64, ball: usize, time: f64) {
+        if value > self.0 {
+            *self = Most(value, ball, time);
+        }
+    }
+}
+
+/// Extremes from the positions of all bodies: ball loads on both races, farthest ends of contact ellipses with their contact
+/// angles, the load between balls, and the displacement of the inner race.
+#[derive(Debug, Default)]
+struct Seen {
+    loads: [Most; 2],
+    edges: [Most; 2],
+    angles: [f64; 2],
+    between: Most,
+    distance: Most,
+}
+
+impl Seen {
+    fn record(&mut self, problem: &DynamicProblem, now: &Simulation) {
+        let (layout, geometry) = (now.system.sets[0].layout, &problem.geometry);
+        let places: Vec<Vector3<f64>> = (0..layout.balls)
+            .map(|ball| layout.ball_state(&now.state, ball).position.into())
+            .collect();
+        let inner = BodyState::from_slice(&now.state[layout.inner()..]).position;
+        let centres = [Vector3::from(inner), Vector3::zeros()];
+        self.distance.take(centres[0].norm(), 0, now.time);
+        let races =
+            [(&geometry.inner, &problem.inner_contact), (&geometry.outer, &problem.outer_contact)];
+        for (side, (race, contact)) in races.into_iter().enumerate() {
+            for (ball, place) in places.iter().enumerate() {
+                // No race tilts: its axis is X.
+                let arm = place - centres[side];
+                let bottom = Vector3::new(0.0, arm.y, arm.z).normalize() * race.centre_radius;
+                let away = arm - bottom;
+                let overlap = away.norm() - (race.groove_radius - geometry.ball_radius);
+                if overlap <= 0.0 {
+                    continue;
+                }
+                let load = contact.stiffness * overlap.powf(1.5);
+                self.loads[side].take(load, ball, now.time);
+                // Lightly loaded contacts do not count.
+                if load < 0.01 * self.loads[side].0 {
+                    continue;
+                }
+                let angle = (away.x.abs() / away.norm()).asin();
+                let reach = angle + contact_ellipse(contact, load).semi_major / race.groove_radius;
+                if reach > self.edges[side].0 {
+                    self.angles[side] = angle;
+                }
+                self.edges[side].take(reach, ball, now.time);
+            }
+        }
+        let law = problem.ball_contact.expect("balls touch");
+        for ball in 0..places.len() {
+            let next = places[(ball + 1) % places.len()];
+            let overlap = 2.0 * geometry.ball_radius - (next - places[ball]).norm();
+            self.between.take(law.stiffness * overlap.max(0.0).powf(1.5), ball, now.time);
+        }
+    }
+}
+
+/// Each extreme of the summary is the largest value of all steps, with the ball and the time that it belongs to.
+#[test]
+fn extremes_have_the_balls_and_times_of_their_values() {
+    for (integrator, stepping) in METHODS {
+        let options =
+            RunOptions { integrator, stepping, start: Start::Nominal, ..RunOptions::default() };
+        let wanted = RunRequest { options, end: 1e-3, output_interval: 1e-3, ..request(1e-6, 1) };
+        let problem = crowded();
+        let mut session = Session::start(problem.clone(), &wanted).unwrap();
+        let mut seen = Seen::default();
+        seen.record(&problem, simulation(&session));
+        loop {
+            let status = session.advance(1).unwrap();
+            seen.record(&problem, simulation(&session));
+            if status == Status::Complete {
+                break;
+            }
+        }
+        let summary = run_summary(&session, &table(&session), &[], &RunReport::default()).unwrap();
+        let extremes = &summary["extremes"];
+        let number = |of: &Value| of["value"].as_f64().unwrap_or_else(|| panic!("{of}"));
+        println!("{integrator:?} {seen:?}");
+        // Overlaps of some 10 um from positions of 30 mm, each rounded to 3e-18 m or so.
+        let same = |of: &Value, key: &str, most: &Most, scale: f64| {
+            let (value, time) = (number(&of[key]) * scale, number(&of["time"]));
+            let error = (value / most.0 - 1.0).abs();
+            assert!(error <= 1e-9 && time == most.2, "{integrator:?} {key}: {of} {most:?}");
+        };
+        same(&extremes["inner_race_farthest"], "distance", &seen.distance, 1.0);
+        same(&extremes["races_farthest_apart"], "distance", &seen.distance, 1.0);
+        let (degree, mut apart) = (1f64.to_radians(), 0);
+        for (side, race) in ["inner_race", "outer_race"].into_iter().enumerate() {
+            let [load, edge] =
+                ["largest_load", "farthest_from_bottom"].map(|what| &extremes[race][what]);
+            same(load, "load", &seen.loads[side], 1.0);
+            same(edge, "ellipse_reaches", &seen.edges[side], degree);
+            let error = (number(&edge["contact_angle"]) * degree / seen.angles[side] - 1.0).abs();
+            assert!(error <= 1e-9, "{integrator:?} {race}: {edge} {seen:?}");
+            assert_eq!(load["ball"], seen.loads[side].1 + 1, "{load} {seen:?}");
+            assert_eq!(edge["ball"], seen.edges[side].1 + 1, "{edge} {seen:?}");
+            assert_ne!(load["time"], edge["time"]);
+            apart += usize::from(load["ball"] != edge["ball"]);
+        }
+        // Not always of one ball, so that one is not taken for the other.
+        assert!(apart > 0, "{extremes}");
+        let between = &extremes["between_balls"]["largest_load"];
+        same(between, "load", &seen.between, 1.0);
+        let first = seen.between.1;
+        assert_eq!(between["balls"], serde_json::json!([first + 1, (first + 1) % 9 + 1]));
     }
 }
 

@@ -1,8 +1,10 @@
 //! A run that was interrupted ends with the same bytes as one that was not.
 
+use super::run_extremes::crowded;
 use crate::run_common;
 
 use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::members::body::Drive;
 use bearing_dynamics::motion::simulation::{Integrator, SimulationError, Start, Stepping};
 use bearing_dynamics::numeric::profile::Profile;
@@ -10,12 +12,13 @@ use bearing_dynamics::output::session::{Checkpoint, RunRequest, Session, Status}
 use bearing_dynamics::output::state::{
     self, StateError, StateRecord, Stopped, fingerprint, read, resume, save,
 };
-use bearing_dynamics::output::summary::{RunReport, write_run_results};
+use bearing_dynamics::output::summary::{RunReport, run_summary, write_run_results};
 use bearing_dynamics::output::table::RunTable;
 use run_common::{
     complete, frictionless, jolted, of_steps, pressed, rattling, request, resumable, simulation,
     simulation_mut,
 };
+use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
@@ -203,6 +206,55 @@ fn interrupted_where_a_load_jumps_the_files_are_the_same() {
         assert_eq!(simulation(&session).time, corner);
         let steps = simulation(&session).steps;
         interrupt(folder.path(), integrator.name(), &problem, &request, &[vec![steps]]);
+    }
+}
+
+/// Names and values of all numbers below a value.
+fn numbers(name: &str, of: &Value, all: &mut Vec<(String, f64)>) {
+    match of {
+        Value::Object(map) => {
+            map.iter().for_each(|(key, of)| numbers(&format!("{name}/{key}"), of, all))
+        }
+        Value::Array(list) => list.iter().for_each(|of| numbers(name, of, all)),
+        _ => all.extend(of.as_f64().map(|value| (name.to_string(), value))),
+    }
+}
+
+/// Extremes that have all occurred before a run is interrupted, of balls that touch too, are those of the unbroken run.
+#[test]
+fn extremes_before_an_interruption_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    // Losses: what comes later is less.
+    let damping = ContactDamping::HuntCrossley { alpha: 3.0 };
+    let problem = DynamicProblem { gravity: [0.0; 3], damping, ..crowded() };
+    for integrator in [Integrator::RungeKutta, Integrator::Rosenbrock] {
+        let step = 0.25e-6;
+        let mut request = RunRequest { end: 1.5e-3, output_interval: 0.1e-3, ..request(step, 1) };
+        request.options.start = Start::Nominal;
+        request.options.integrator = integrator;
+        if integrator == Integrator::Rosenbrock {
+            request.options.stepping = Stepping::Accuracy(1e-3);
+        }
+        let extremes = |mut session: Session| {
+            while session.advance(1000).unwrap() == Status::Running {}
+            let table = RunTable::new(&session, 0.0).unwrap();
+            let summary = run_summary(&session, &table, &[], &RunReport::default()).unwrap();
+            let mut all = Vec::new();
+            numbers("", &summary["extremes"], &mut all);
+            all
+        };
+        let whole = extremes(Session::start(problem.clone(), &request).unwrap());
+        println!("{whole:?}");
+        let times = whole.iter().filter(|(name, _)| name.ends_with("/time/value"));
+        let last = times.clone().map(|(_, time)| *time).fold(0.0, f64::max);
+        assert!(times.count() == 7 && last < 0.9 * request.end, "{whole:?}");
+        assert!(whole.iter().all(|(_, value)| *value > 0.0), "{whole:?}");
+        let mut session = Session::start(problem.clone(), &request).unwrap();
+        while simulation(&session).time <= last {
+            assert_eq!(session.advance(1).unwrap(), Status::Running);
+        }
+        write(folder.path(), &problem, &request, &mut session, Stopped::Interrupted);
+        assert_eq!(extremes(go_on(folder.path(), &problem, &request)), whole);
     }
 }
 

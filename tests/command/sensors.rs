@@ -1,6 +1,7 @@
 //! Sensors of a run: columns, spectra, pictures, and what is said of them.
 
 use crate::command_line_common::{changed, done, files, json, read, scene, text, write};
+use std::collections::BTreeMap;
 use std::path::Path;
 use tempfile::tempdir;
 
@@ -138,4 +139,61 @@ fn acquisition_and_defect_lines_are_in_spectra_alone() {
     assert!(!written.iter().any(|file| file.contains("envelope")), "{written:?}");
     assert!(!written.iter().any(|file| file == "spectrum_side_acceleration.csv"), "{written:?}");
     assert!(read(&out.join("spectrum.csv")).contains("side_acceleration"));
+}
+
+/// Each reading at a line is the amplitude in the written bin of the spectrum, the highest of the nearest bin and its
+/// neighbours.
+#[test]
+fn readings_at_lines_are_those_of_their_bins() {
+    let root = tempdir().unwrap();
+    let path = write(
+        root.path(),
+        "scene.toml",
+        "[bearing]\nkind = \"deep-groove\"\nballs = 9\npitch_radius = \"19.25 mm\"\nclearance = { radial = \"10 um\" }\n\
+         inner_race = { conformity = 0.515 }\nouter_race = { conformity = 0.525 }\nball = { diameter = \"7.938 mm\" }\n\
+         [inner_race]\nspeed = \"9000 rpm\"\nx = { load = \"100 N\" }\nz = { load = \"-500 N\" }\n\
+         [outer_race]\nmotion = \"5-dof\"\n[outer_race.foundation]\nstiffness = { x = \"1e8 N/m\", y = \"1e8 N/m\", \
+         z = \"1e8 N/m\", tilt_y = \"1e5 N m/rad\", tilt_z = \"1e5 N m/rad\" }\n\
+         [sensor.top]\nkind = \"accelerometer\"\non = \"outer_race\"\nradius = \"30 mm\"\nangle = \"90 deg\"\nsampling = \"10 kHz\"\n\
+         [traction]\nlaw = \"none\"\n[numerics]\nend = \"50 ms\"\noutput_interval = \"50 us\"\naccuracy = 1e-3\n\
+         [output]\nplots = [\"spectrum\"]\nchannels = [\"races\"]\nwindow_start = \"10 ms\"\n",
+    );
+    let out = root.path().join("out");
+    done(&["run", &path, "--out", &text(&out)]);
+    let spectra = &json(&out.join("summary.json"))["spectra"];
+    let number = |of: &serde_json::Value| of["value"].as_f64().unwrap_or_else(|| panic!("{of}"));
+    let mut offsets = BTreeMap::new();
+    for (channel, of) in spectra["channels"].as_object().unwrap() {
+        let sampled = channel == "top_acceleration";
+        let file = if sampled { "spectrum_top_acceleration.csv" } else { "spectrum.csv" };
+        let table = read(&out.join(file));
+        let mut lines = table.lines();
+        let names = lines.next().unwrap().split(',');
+        let column = names.map(|name| name.split(' ').next().unwrap()).position(|of| of == channel);
+        let rows: Vec<[f64; 2]> = lines
+            .map(|line| {
+                let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+                [cells[0], cells[column.expect(channel)]]
+            })
+            .collect();
+        let width = rows[1][0];
+        for (line, at) in of["lines"].as_object().unwrap() {
+            let frequency = number(&spectra["lines"]["bearings"][0]["frequencies"][line]);
+            let nearest = (frequency / width).round() as usize;
+            let bin = (number(&at["bin_frequency"]) / width).round() as usize;
+            // Decimal digits of a frequency.
+            let error = (rows[bin][0] / number(&at["bin_frequency"]) - 1.0).abs();
+            assert!(error <= 1e-12, "{channel} {line}: {at} {}", rows[bin][0]);
+            let offset = bin as i64 - nearest as i64;
+            assert_eq!(at["bins_from_nearest"], offset, "{channel} {line}: {at} {frequency}");
+            let highest =
+                rows[nearest - 1..=nearest + 1].iter().map(|row| row[1]).fold(0.0, f64::max);
+            let amplitude = number(&at["amplitude"]);
+            assert!(amplitude == rows[bin][1] && amplitude == highest, "{channel} {line}: {at}");
+            *offsets.entry(offset).or_insert(0) += 1;
+        }
+    }
+    // Bins on both sides of the nearest one, many times.
+    let often = [-1, 0, 1].map(|offset| offsets.get(&offset).copied().unwrap_or(0));
+    assert!(often.iter().all(|count| *count >= 5) && offsets.len() == 3, "{offsets:?}");
 }

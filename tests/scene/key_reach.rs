@@ -97,8 +97,8 @@ fn leaves(text: &str) -> BTreeMap<String, String> {
     found
 }
 
-fn resolved(change: Option<(&str, &str)>) -> Result<BTreeMap<String, String>, String> {
-    let mut document = Document::read_str(SCENE, Format::Toml, "scene").unwrap();
+fn resolved(scene: &str, change: Option<(&str, &str)>) -> Result<BTreeMap<String, String>, String> {
+    let mut document = Document::read_str(scene, Format::Toml, "scene").unwrap();
     if let Some((key, value)) = change {
         document.set(key, value).map_err(|error| error.to_string())?;
     }
@@ -111,8 +111,9 @@ fn resolved(change: Option<(&str, &str)>) -> Result<BTreeMap<String, String>, St
 /// Places that differ from the scene as it is, apart from the list of defaults in use.
 ///
 /// `None` for a key that the scene refuses.
-fn reach(base: &BTreeMap<String, String>, key: &str, value: &str) -> Option<BTreeSet<String>> {
-    let now = match resolved(Some((key, value))) {
+fn reach(scene: &str, key: &str, value: &str) -> Option<BTreeSet<String>> {
+    let base = resolved(scene, None).unwrap();
+    let now = match resolved(scene, Some((key, value))) {
         Err(error) if error.contains("refused") => return None,
         now => now.unwrap_or_else(|error| panic!("{key} = {value}: {error}")),
     };
@@ -148,8 +149,7 @@ fn other_value(key: &Key) -> Option<String> {
 
 #[test]
 fn a_key_reaches_places_of_its_own() {
-    let base = resolved(None).unwrap();
-    assert_eq!(resolved(None).unwrap(), base);
+    assert_eq!(resolved(SCENE, None), resolved(SCENE, None));
     let mut looked = 0;
     for (table, names) in TABLES {
         let mut seen: Vec<(String, BTreeSet<String>)> = Vec::new();
@@ -162,7 +162,7 @@ fn a_key_reaches_places_of_its_own() {
                 } else {
                     format!("{first}.{name}.{rest}")
                 };
-                let Some(own) = reach(&base, &path, &value) else { continue };
+                let Some(own) = reach(SCENE, &path, &value) else { continue };
                 assert!(!own.is_empty(), "{path} = {value} changes nothing");
                 for (other, places) in &seen {
                     let shared: Vec<_> = own.intersection(places).collect();
@@ -175,4 +175,52 @@ fn a_key_reaches_places_of_its_own() {
         assert!(!seen.is_empty(), "{table}");
     }
     assert!(looked >= 60, "{looked}");
+}
+
+/// A bearing whose races both move, with the inertia of the outer one from its sizes.
+const RACES: &str = r#"
+[bearing]
+kind = "deep-groove"
+balls = 9
+pitch_radius = "19.25 mm"
+ball.diameter = "7.938 mm"
+clearance.radial = "5 um"
+inner_race = { conformity = 0.515 }
+outer_race = { conformity = 0.525 }
+[inner_race]
+z = { load = "-100 N" }
+[outer_race]
+motion = "5-dof"
+[numerics]
+end = "1 ms"
+output_interval = "1 us"
+"#;
+
+/// A key of one race changes no resolved value that a key of the other race changes.
+#[test]
+fn keys_of_a_race_leave_the_other_race_as_it_is() {
+    let given =
+        "inertia = { mass = \"0.2 kg\", axial = \"1e-4 kg m^2\", transverse = \"1e-4 kg m^2\" }\n";
+    let of_both = RACES
+        .replace("[inner_race]\n", &format!("[inner_race]\n{given}"))
+        .replace("[outer_race]\n", &format!("[outer_race]\n{given}"));
+    for (scene, fewest) in [(RACES, 8), (&of_both, 14)] {
+        let mut looked = 0;
+        let [inner, outer] = ["inner_race", "outer_race"].map(|race| {
+            let below = |path: &str| path.strip_prefix(race).is_some_and(|of| of.starts_with('.'));
+            let mut places = BTreeMap::new();
+            for key in KEYS.iter().filter(|key| below(key.path)) {
+                let Some(value) = other_value(key) else { continue };
+                let Ok(_) = resolved(scene, Some((key.path, &value))) else { continue };
+                let own = reach(scene, key.path, &value).expect("not refused");
+                places.extend(own.into_iter().map(|place| (place, key.path)));
+                looked += 1;
+            }
+            places
+        });
+        for (place, key) in &inner {
+            assert!(!outer.contains_key(place), "{key} and {} both change {place}", outer[place]);
+        }
+        assert!(inner.len() >= 2 && looked >= fewest, "{looked} {inner:?}");
+    }
 }

@@ -14,6 +14,7 @@ mod scene_defaults;
 mod scene_docs;
 mod scene_dynamics;
 mod scene_errors;
+mod scene_excitations;
 mod scene_fuzz;
 mod scene_lists;
 mod scene_places;

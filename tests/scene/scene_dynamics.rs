@@ -443,18 +443,19 @@ fn energy_limits_are_those_that_the_reference_states() {
     }
 }
 
-/// Whether inertia is given or follows from the geometry, what is added weighs and has no size.
+/// Mass added to the inner race adds to its mass alone, whether its inertia is given or follows from the geometry.
 #[test]
 fn added_mass_adds_to_the_mass_alone() {
     let given =
         "inertia = { mass = \"0.2 kg\", axial = \"1 kg mm^2\", transverse = \"1 kg mm^2\" }\n";
-    for inertia in ["", given] {
-        let of = |added: &str| problem(&format!("[inner_race]\n{added}{inertia}"));
+    for [inner, outer] in [["", ""], ["", given], [given, ""], [given, given]] {
+        let rest = format!("{inner}[outer_race]\nmotion = \"5-dof\"\n{outer}");
+        let of = |added: &str| problem(&format!("[inner_race]\n{added}{rest}"));
         let (plain, laden) = (of(""), of("added_mass = \"0.75 kg\"\n"));
         let (was, is) = (plain.inner.inertia, laden.inner.inertia);
         assert_eq!(is.mass, was.mass + 0.75);
         assert_eq!((is.axial, is.transverse), (was.axial, was.transverse));
-        let outer = |of: &DynamicProblem| of.outer.as_ref().map(|race| race.inertia);
+        let outer = |of: &DynamicProblem| of.outer.as_ref().expect("a moving outer race").inertia;
         assert_eq!(outer(&plain), outer(&laden));
     }
 }
