@@ -120,7 +120,7 @@ pub const TABLE: [Entry; 19] = [
         title: "Load on the open side of an angular-contact bearing",
         meaning: "A ball carries load at a negative contact angle, where the real groove has no shoulder. The real bearing would come apart \
                   there.",
-        action: "Preload the bearing along +x, or turn it round with `reversed`.",
+        action: "Preload the bearing along +x (-x if it is `reversed`), or turn it round with `reversed`.",
     },
     Entry {
         name: "W06-centrifugal-force-left-out",
