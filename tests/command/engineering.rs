@@ -106,6 +106,10 @@ fn the_polar_plot_searches_as_the_scene_does() {
     assert!(none.join("summary.json").is_file() && !none.join("load_zone.svg").exists());
     let message = refused(&["statics", &path, "--dry", "--set", "output.plots=[\"pie\"]"]);
     assert!(message.contains("pie"), "{message}");
+    let turned = ["statics", &path, "--dry", "--set", "bearing.reversed=true"];
+    assert!(!done(&turned).contains("note: statics draws"));
+    let said = done(&[&turned[..], &["--set", "output.plots=[\"polar\"]"]].concat());
+    assert!(said.contains("not `reversed`"), "{said}");
 }
 
 #[test]
