@@ -320,6 +320,28 @@ fn loads_over_azimuth_are_drawn_where_the_ball_is() {
     assert_eq!((file.as_str(), found), ("polar.svg", &polar(&expected).unwrap()));
 }
 
+/// Ball 1 may be unloaded all the time.
+#[test]
+fn loads_over_time_are_those_of_the_most_loaded_ball() {
+    let loads = ["ball_1_inner_load", "ball_2_inner_load", "ball_3_inner_load"];
+    let mut columns = vec![Column::new("time", "s")];
+    columns.extend(loads.map(|name| Column::new(name, "N")));
+    let rows = [[0.0, 0.0, 5.0, 7.0], [0.1, 0.0, 9.0, 7.0]];
+    let table = RunTable {
+        series: Series::new(columns, Array2::from(rows.to_vec())).unwrap(),
+        interval: 0.1,
+        window: 0..2,
+        bearings: vec![String::new()],
+        bodies: Vec::new(),
+        sensors: Vec::new(),
+        geometries: Vec::new(),
+    };
+    let drawn = draw(Picture::Series, "Balls", &table).unwrap();
+    let [(file, svg)] = &drawn[..] else { panic!("{drawn:?}") };
+    assert_eq!(file, "series_loads.svg");
+    assert!(svg.contains("ball 2 on inner race") && svg.contains("most loaded ball"), "{svg}");
+}
+
 /// Marks within the axis are lines with labels; a label that would cover an earlier one is left out.
 #[test]
 fn marks_are_labelled_lines_within_the_axis() {
