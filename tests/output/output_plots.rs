@@ -187,6 +187,23 @@ fn circle(svg: &str, fill: &str) -> [f64; 2] {
     })
 }
 
+/// Pieces of a curve over azimuth are joined up to three times the usual distance of its points.
+#[test]
+fn polar_curves_are_interrupted_at_azimuths_without_points() {
+    let at = |degrees: usize| [(2.0 * degrees as f64).to_radians(), 10.0];
+    let lines = |points: Vec<usize>| {
+        let curve = Curve::new("a", points.into_iter().map(at).collect());
+        polar(&polar_plot(vec![curve])).unwrap().matches("<polyline").count()
+    };
+    let whole = lines((0..180).collect());
+    assert_eq!(lines((0..180).filter(|i| i % 60 != 1).collect()), whole);
+    assert_eq!(lines((0..180).filter(|i| i % 60 < 30).collect()), whole + 2);
+    assert_eq!(lines((0..180).filter(|i| (5..15).contains(&(i % 60))).collect()), whole + 2);
+    // A point alone is a marker.
+    let alone = lines((0..100).chain([140]).collect());
+    assert_eq!(alone, whole);
+}
+
 /// Seen against the axial direction: Y to the right, Z up.
 #[test]
 fn azimuths_go_from_y_to_z_as_they_are_seen() {
