@@ -149,6 +149,8 @@ fn friction_torque_is_reported() {
         let changes = ["--set", "numerics.end=0.04 s", "--set", "output.plots=[]", "--set", &of];
         let said = done(&[&["run", &shipped, "--out", &text(&out)][..], &changes].concat());
         assert!(said.contains("friction torque") && said.contains("power loss"), "{said}");
+        let (_, power) = said.split_once("power loss ").unwrap();
+        assert!(!power.split_once(" W").unwrap().0.contains('e'), "{said}");
         assert!(said.contains("BPFO") && said.contains("2 BSF"), "{said}");
         let summary = json(&out.join("summary.json"));
         let value = |key: &str| summary["friction"][key]["value"].as_f64().unwrap();
