@@ -78,7 +78,7 @@ pub fn of_equilibrium(
     let bearings = scene.bearings.iter().zip(&assembly.bearings).zip(&solution.bearings);
     for ((placed, bearing), state) in bearings {
         let contacts = [&bearing.inner_contact, &bearing.outer_contact];
-        let own = shared(&placed.scene, contacts, &at_rest(&placed.scene, &state.balls));
+        let own = shared(placed, contacts, &at_rest(&placed.scene, &state.balls));
         let own = own.into_iter().chain(centrifugal_left_out(&placed.scene, &state.balls));
         warnings.extend(named(placed, own));
     }
@@ -140,7 +140,7 @@ pub fn of_run(scene: &AssemblyScene, session: &Session) -> Vec<Warning> {
         let bearings = simulation.system.assembly.bearings.iter().zip(&simulation.extremes);
         for (placed, (bearing, extremes)) in scene.bearings.iter().zip(bearings) {
             let contacts = [&bearing.inner_contact, &bearing.outer_contact];
-            let own = shared(&placed.scene, contacts, &in_motion(bearing, extremes));
+            let own = shared(placed, contacts, &in_motion(bearing, extremes));
             warnings.extend(named(placed, own.into_iter()));
         }
     }
@@ -184,9 +184,14 @@ fn update_largest(largest: &mut Extreme, value: f64, ball: usize) -> bool {
     larger
 }
 
-fn shared(scene: &Scene, contacts: [&HertzContact; 2], seen: &ContactExtremes) -> Vec<Warning> {
+fn shared(
+    placed: &PlacedBearing,
+    contacts: [&HertzContact; 2],
+    seen: &ContactExtremes,
+) -> Vec<Warning> {
+    let scene = &placed.scene;
     let all = [
-        on_open_side(scene, seen),
+        on_open_side(placed, seen),
         past_shoulder(scene, seen),
         above_rating(scene, contacts, seen),
     ];
@@ -222,15 +227,16 @@ fn above_rating(
 
 /// Load on the open side of an angular-contact bearing. The groove of the model is a full torus and
 /// supports loads on either side.
-fn on_open_side(scene: &Scene, seen: &ContactExtremes) -> Option<Warning> {
-    if scene.geometry.contact_angle <= 0.0 || seen.reversed.is_empty() {
+fn on_open_side(placed: &PlacedBearing, seen: &ContactExtremes) -> Option<Warning> {
+    if placed.scene.geometry.contact_angle <= 0.0 || seen.reversed.is_empty() {
         return None;
     }
     let numbers: Vec<String> = seen.reversed.iter().map(usize::to_string).collect();
     let text = format!(
-        "ball{} {} loaded at a negative contact angle, where an angular-contact bearing has no shoulder: preload it along +x",
+        "ball{} {} loaded at a negative contact angle, where an angular-contact bearing has no shoulder: preload it along {}x",
         if numbers.len() == 1 { "" } else { "s" },
-        numbers.join(", ")
+        numbers.join(", "),
+        if placed.reversed { '-' } else { '+' }
     );
     Some(Warning::new(WarningCode::LoadOnOpenSide, text))
 }

@@ -21,7 +21,8 @@ pub enum SimulationError {
     )]
     NoErrorEstimate,
     #[error(
-        "an accuracy is relative to contact deformation, and the scene has no bearing; give a step instead"
+        "numerics.accuracy is relative to contact deformation, and the scene has no bearing. Hint: write numerics.step, or \
+         leave numerics.integrator out; the step then follows from the stability limit"
     )]
     NothingToMeasure,
     #[error(
@@ -43,8 +44,7 @@ pub enum SimulationError {
     #[error(
         "the step of {size:.3e} s is longer than the largest stable step, {limit:.3e} s, at t = {at} s, step \
          {step} ({reason}): oscillations would grow, or the direction of sliding would alternate from step to \
-         step. Hint: write a shorter numerics.step, or omit it; the program then computes the step from the \
-         stability limit",
+         step. Hint: write a shorter numerics.step, or leave it out; the program then chooses the step",
         at = display_time(*time)
     )]
     StepTooLong { size: f64, limit: f64, reason: String, time: f64, step: u64 },

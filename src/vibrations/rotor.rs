@@ -234,6 +234,13 @@ impl RotorModel {
         (0..self.rigid()).filter(lateral).any(|mode| self.stiffness.row(mode).amax() == 0.0)
     }
 
+    /// Returns whether motions decay or grow without rotation.
+    pub fn is_damped(&self) -> bool {
+        self.damping.amax() > 0.0
+            || !self.relaxing.is_empty()
+            || circulation(&self.stiffness).is_some()
+    }
+
     /// Index of the station at a position (m), if there is one.
     pub fn station(&self, at: f64) -> Option<usize> {
         station_at(&self.stations, at)

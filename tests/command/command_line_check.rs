@@ -65,6 +65,9 @@ fn clearance_is_echoed_both_ways_and_through_each_part() {
             assert!(said.contains(&line), "{said}");
         }
     }
+    let path = write(root.path(), "scene.toml", ANGULAR_CONTACT);
+    let said = done(&["check", &path]);
+    assert!(said.contains("+0.0000 um diametral\n"), "{said}");
 }
 
 #[test]

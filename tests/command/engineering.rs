@@ -106,6 +106,10 @@ fn the_polar_plot_searches_as_the_scene_does() {
     assert!(none.join("summary.json").is_file() && !none.join("load_zone.svg").exists());
     let message = refused(&["statics", &path, "--dry", "--set", "output.plots=[\"pie\"]"]);
     assert!(message.contains("pie"), "{message}");
+    let turned = ["statics", &path, "--dry", "--set", "bearing.reversed=true"];
+    assert!(!done(&turned).contains("note: statics draws"));
+    let said = done(&[&turned[..], &["--set", "output.plots=[\"polar\"]"]].concat());
+    assert!(said.contains("not `reversed`"), "{said}");
 }
 
 #[test]
@@ -145,6 +149,8 @@ fn friction_torque_is_reported() {
         let changes = ["--set", "numerics.end=0.04 s", "--set", "output.plots=[]", "--set", &of];
         let said = done(&[&["run", &shipped, "--out", &text(&out)][..], &changes].concat());
         assert!(said.contains("friction torque") && said.contains("power loss"), "{said}");
+        let (_, power) = said.split_once("power loss ").unwrap();
+        assert!(!power.split_once(" W").unwrap().0.contains('e'), "{said}");
         assert!(said.contains("BPFO") && said.contains("2 BSF"), "{said}");
         let summary = json(&out.join("summary.json"));
         let value = |key: &str| summary["friction"][key]["value"].as_f64().unwrap();

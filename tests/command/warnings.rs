@@ -4,8 +4,8 @@ use super::rubber_limits::{block, cube};
 use super::run_command::scene;
 use super::turning_springs::disc;
 use crate::command_line_common::{
-    ANGULAR_CONTACT, DEEP_GROOVE, bearing, changed, json, read, refusal, scene as shipped, text,
-    write,
+    ANGULAR_CONTACT, DEEP_GROOVE, bearing, changed, done, json, read, refusal, scene as shipped,
+    text, write,
 };
 use crate::housed_command_common::scene_text;
 
@@ -96,6 +96,14 @@ fn of_equilibria_of_bearings() {
         assert_raised("W03", command, &pressed, &short);
         assert_raised("W04", command, &low, &short);
         assert_raised("W05", command, &reversed, &forward);
+    }
+    let turned = changed(&reversed, "[bearing]\n", "[bearing]\nreversed = true\n");
+    let turned = changed(&turned, "-445 N", "445 N");
+    let root = tempdir().unwrap();
+    for (content, remedy) in [(&reversed, "preload it along +x"), (&turned, "preload it along -x")]
+    {
+        let said = done(&["statics", &write(root.path(), "scene.toml", content), "--dry"]);
+        assert!(said.contains(remedy), "{said}");
     }
     let flung = |counts: &str| {
         one_angular_contact("200 N", &format!("[ball_forces]\ncentrifugal = {counts}\n"))

@@ -276,13 +276,15 @@ fn a_surface_of_elements_without_sides_is_what_lies_outside() {
 #[test]
 fn sets_of_a_deck_may_name_lines_and_triangles() {
     let further = "*Element, type=T3D2, elset=edge\n21, 2, 7\n*Element, type=B31\n22, 3, 7\n\
-                   *Element, type=S3, elset=sail\n31, 1, 2, 7\n*Elset, elset=mixed\n11, 22\n*Material, name=steel\n";
+                   *Element, type=S3, elset=sail\n31, 1, 2, 7\n*Elset, elset=mixed\n11, 22\n*Elset, elset=all\nsail, 22\n*Material, name=steel\n";
     let text = DECK.replacen("*Material, name=steel\n", further, 1);
     let Loaded { mesh, .. } = read_abaqus(text.as_bytes(), LengthUnit::Metre).unwrap();
     assert_eq!(mesh.node_set("edge").unwrap(), [1, 3]);
     assert_eq!(mesh.node_set("mixed").unwrap(), [2, 3]);
     assert_eq!(mesh.surface_set("sail").unwrap().len(), 1);
     assert_eq!(mesh.node_set("sail").unwrap(), [0, 1, 3]);
+    assert_eq!(mesh.surface_set("all").unwrap(), mesh.surface_set("sail").unwrap());
+    assert_eq!(mesh.node_set("all").unwrap(), [0, 1, 2, 3]);
     let of_elements: Vec<&str> = mesh.element_sets.keys().map(String::as_str).collect();
     assert_eq!(of_elements, ["again", "body", "mixed"]);
 }
@@ -536,7 +538,7 @@ fn binary_counts_are_not_believed() {
 fn millimetres_read_as_metres_are_noticed() {
     let loaded = read_gmsh(&data("box_o1_v41.msh"), LengthUnit::Metre).unwrap();
     let said = loaded.notes[0].to_string();
-    assert!(said.contains("size of 3.7417e1 m") && said.contains("3.7417e-2 m"), "{said}");
+    assert!(said.contains("size of 37.4166 m") && said.contains("0.0374166 m"), "{said}");
     let small = write_abaqus(&bar([0.1, 0.01, 0.01], [4, 1, 1]).unwrap().mesh).unwrap();
     let loaded = read_abaqus(small.as_bytes(), LengthUnit::Millimetre).unwrap();
     assert!(matches!(loaded.notes[..], [Note::UnlikelySize { .. }]), "{:?}", loaded.notes);

@@ -187,6 +187,23 @@ fn circle(svg: &str, fill: &str) -> [f64; 2] {
     })
 }
 
+/// Pieces of a curve over azimuth are joined up to three times the usual distance of its points.
+#[test]
+fn polar_curves_are_interrupted_at_azimuths_without_points() {
+    let at = |degrees: usize| [(2.0 * degrees as f64).to_radians(), 10.0];
+    let lines = |points: Vec<usize>| {
+        let curve = Curve::new("a", points.into_iter().map(at).collect());
+        polar(&polar_plot(vec![curve])).unwrap().matches("<polyline").count()
+    };
+    let whole = lines((0..180).collect());
+    assert_eq!(lines((0..180).filter(|i| i % 60 != 1).collect()), whole);
+    assert_eq!(lines((0..180).filter(|i| i % 60 < 30).collect()), whole + 2);
+    assert_eq!(lines((0..180).filter(|i| (5..15).contains(&(i % 60))).collect()), whole + 2);
+    // A point alone is a marker.
+    let alone = lines((0..100).chain([140]).collect());
+    assert_eq!(alone, whole);
+}
+
 /// Seen against the axial direction: Y to the right, Z up.
 #[test]
 fn azimuths_go_from_y_to_z_as_they_are_seen() {
@@ -318,6 +335,28 @@ fn loads_over_azimuth_are_drawn_where_the_ball_is() {
         ..polar_plot(vec![there])
     };
     assert_eq!((file.as_str(), found), ("polar.svg", &polar(&expected).unwrap()));
+}
+
+/// Ball 1 may be unloaded all the time.
+#[test]
+fn loads_over_time_are_those_of_the_most_loaded_ball() {
+    let loads = ["ball_1_inner_load", "ball_2_inner_load", "ball_3_inner_load"];
+    let mut columns = vec![Column::new("time", "s")];
+    columns.extend(loads.map(|name| Column::new(name, "N")));
+    let rows = [[0.0, 0.0, 5.0, 7.0], [0.1, 0.0, 9.0, 7.0]];
+    let table = RunTable {
+        series: Series::new(columns, Array2::from(rows.to_vec())).unwrap(),
+        interval: 0.1,
+        window: 0..2,
+        bearings: vec![String::new()],
+        bodies: Vec::new(),
+        sensors: Vec::new(),
+        geometries: Vec::new(),
+    };
+    let drawn = draw(Picture::Series, "Balls", &table).unwrap();
+    let [(file, svg)] = &drawn[..] else { panic!("{drawn:?}") };
+    assert_eq!(file, "series_loads.svg");
+    assert!(svg.contains("ball 2 on inner race") && svg.contains("most loaded ball"), "{svg}");
 }
 
 /// Marks within the axis are lines with labels; a label that would cover an earlier one is left out.

@@ -288,7 +288,9 @@ fn set_names_the_key_and_what_is_wrong() {
     let word = document.set("bearing.hertz", "exakt").unwrap_err().to_string();
     assert!(word.contains("did you mean `exact`"), "{word}");
     let gravity = document.set("ball_forces.gravity", "1 g").unwrap_err().to_string();
-    assert!(gravity.contains("cannot be varied"), "{gravity}");
+    assert!(gravity.contains("list of three") && gravity.contains("[\"0 m/s^2\""), "{gravity}");
+    let none = document.set("output.plots", "").unwrap_err().to_string();
+    assert!(none.contains("[\"load-zone\"]"), "{none}");
     document.set("bearing.ball.radius", "7 mm").unwrap();
     let late = scene::resolve(&document).unwrap_err().to_string();
     assert!(late.contains("bearing.ball.radius"), "{late}");

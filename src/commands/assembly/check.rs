@@ -158,13 +158,19 @@ fn bearing_lines(scene: &Scene, line: &mut Line) {
             1e3 * sizes.nominal_ball_radius
         ),
     );
+    let made = match sizes.radial_clearance {
+        0.0 => String::new(),
+        _ => {
+            let part = through(sizes.clearance_through).replace('-', " ");
+            format!(", made through the {part}")
+        }
+    };
     line(
         "clearance",
         format!(
-            "{:+.4} um radial = {:+.4} um diametral, made through the {}",
+            "{:+.4} um radial = {:+.4} um diametral{made}",
             1e6 * sizes.radial_clearance,
-            1e6 * sizes.diametral_clearance,
-            through(sizes.clearance_through).replace('-', " ")
+            1e6 * sizes.diametral_clearance
         ),
     );
     for (label, race) in [("inner race", &sizes.inner_race), ("outer race", &sizes.outer_race)] {

@@ -15,8 +15,8 @@ use crate::commands::warnings::of_equilibrium;
 use crate::commands::{CommandResult, Outcome, print};
 use bearing_dynamics::assembly::lists::Assembly;
 use bearing_dynamics::equilibrium::lists::{Place, StaticAssembly, StaticBody};
-use bearing_dynamics::equilibrium::quasi_static_limit::{HousingMass, MovingBody};
-use bearing_dynamics::equilibrium::statics::{AssemblySolution, Determinacy};
+use bearing_dynamics::equilibrium::quasi_static_limit::MovingBody;
+use bearing_dynamics::equilibrium::statics::Determinacy;
 use bearing_dynamics::members::body::{Body, Rotation};
 use bearing_dynamics::numeric::clock::to_digits;
 use bearing_dynamics::output::natural_modes::{frequency, moves_most, names, write};
@@ -29,7 +29,7 @@ use bearing_dynamics::solids::condensation::CondensedBore;
 use bearing_dynamics::solids::memory::modes_of_fixed;
 use bearing_dynamics::solids::modes::Mode as NaturalMode;
 use bearing_dynamics::vibrations::rotor::RotorError;
-use bearing_dynamics::vibrations::small_motions::{SmallMotionModel, natural_modes, whirling};
+use bearing_dynamics::vibrations::small_motions::{natural_modes, whirling};
 use serde_json::json;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -79,7 +79,11 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     let limit = ACCURATE * first_left_out;
     found.retain(|mode| frequency(mode) <= limit);
     let names = names(still, &bodies, assembly, &of_housings);
-    let mut text = "mode        frequency, Hz  moves most\n".to_string();
+    let mean =
+        scene.circulatory().map_or("", |_| ", with the mean of `yz` and `zy` of each spring");
+    let mut text = format!(
+        "natural modes without rotation and damping{mean}\nmode        frequency, Hz  moves most\n"
+    );
     for (index, mode) in found.iter().enumerate() {
         let most = &names[moves_most(mode)];
         let _ = writeln!(text, "{:>4} {:>20.6}  {most}", index + 1, frequency(mode));
@@ -93,11 +97,14 @@ pub fn run(asked: &Asked, scene: &AssemblyScene) -> CommandResult {
     }
     print(&text)?;
     let mut warnings = of_equilibrium(scene, still, solution)?;
-    let (spinning, no_whirl) = match spinning(assembly, still, solution, &bodies, &masses) {
-        Ok(Some(whirling)) => {
+    let rotates = bodies.iter().any(|of| has_speed(&assembly.bodies[of.body]));
+    let torque = by_torque(assembly).filter(|_| !rotates);
+    let (spinning, no_whirl) = match whirling(assembly, still, solution, &bodies, &masses) {
+        Ok(whirling) if rotates || torque.is_none() && whirling.model.is_damped() => {
             (Some(Spinning::new(whirling, !masses.is_empty(), TAU * limit)?), None)
         }
-        Ok(None) => (None, by_torque(assembly)),
+        Ok(_) => (None, torque),
+        Err(RotorError::Unstable) if !rotates => (None, torque),
         // The modes at rest are valid without whirl.
         Err(why @ RotorError::Uneven { .. }) => (None, Some(why.to_string())),
         Err(RotorError::Unstable) if solution.determinacy != Determinacy::Determinate => {
@@ -185,20 +192,6 @@ fn by_torque(assembly: &Assembly) -> Option<String> {
         "{} is driven by a torque, so that its speed is not known; write speed = \"... rpm\" instead of the torque",
         body.name
     ))
-}
-
-/// Whirl model; `None` if no moving body spins.
-fn spinning(
-    assembly: &Assembly,
-    still: &StaticAssembly,
-    solution: &AssemblySolution,
-    bodies: &[MovingBody],
-    masses: &[HousingMass],
-) -> Result<Option<SmallMotionModel>, RotorError> {
-    if !bodies.iter().any(|of| has_speed(&assembly.bodies[of.body])) {
-        return Ok(None);
-    }
-    whirling(assembly, still, solution, bodies, masses).map(Some)
 }
 
 fn moving_bodies(assembly: &Assembly, still: &StaticAssembly) -> Vec<MovingBody> {

@@ -39,7 +39,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-const ONE_BEARING: &str = "note: moment-tilt and polar are drawn only for a single bearing with a fixed outer race; `bearing sweep` gives loads over positions\n";
+const ONE_BEARING: &str = "note: statics draws moment-tilt and polar only for one unnamed bearing at the origin with a fixed outer race, not `reversed`, without bodies, springs, foundation and housing; `bearing sweep` gives loads over positions\n";
 
 /// An equilibrium and everything its results folder records.
 pub struct Found<'s> {
@@ -178,7 +178,7 @@ fn by_name(
 }
 
 impl Found<'_> {
-    fn text(&self) -> Fallible<String> {
+    fn text(&self, document: &Document) -> Fallible<String> {
         let mut of_housings: String = self.settled.iter().map(Settled::text).collect();
         if let Some(matrix) = &self.to_ground {
             of_housings += &table::ground_stiffness(matrix);
@@ -218,7 +218,8 @@ impl Found<'_> {
         if let Some(ratio) = &self.inertia {
             text += &format!("note: inertia left out: {}\n", ratio.text());
         }
-        if self.scene.common().plots.contains(&Plot::MomentTilt)
+        if document.is_given("output.plots")
+            && self.scene.common().plots.iter().any(|plot| *plot != Plot::LoadZone)
             && (self.of_one.is_none() || !self.settled.is_empty())
         {
             text += ONE_BEARING;
@@ -373,7 +374,7 @@ pub fn run(asked: &Asked, scene: &AssemblyScene, read: f64) -> CommandResult {
     let folder = asked.folder(Writes::Statics)?;
     let found = find_equilibrium(asked.document, scene, read)?;
     // Printed first, so that an error in a file loses no result.
-    print(&found.text()?)?;
+    print(&found.text(asked.document)?)?;
     let Some(folder) = folder else { return Ok(Outcome::Done) };
     remove_earlier(&folder)?;
     let start = Instant::now();

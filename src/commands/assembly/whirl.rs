@@ -50,7 +50,8 @@ impl Spinning {
     pub fn new(whirling: SmallMotionModel, housed: bool, limit: f64) -> Fallible<Spinning> {
         let top = whirling.top_speed;
         let model = &whirling.model;
-        let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / (SPEEDS - 1) as f64).collect();
+        let speeds = (0..SPEEDS).map(|i| top * i as f64 / (SPEEDS - 1) as f64);
+        let speeds: Vec<f64> = speeds.filter(|_| top != 0.0).collect();
         let mut whirls = model.whirls(top, 2 * LINES)?;
         whirls.retain(|whirl| is_whirl(whirl) && whirl.frequency() <= limit);
         whirls.truncate(LINES);
@@ -69,6 +70,11 @@ impl Spinning {
         let shown = campbell.lines.iter().enumerate().filter(|(i, line)| *i < first || near(line));
         campbell.lines = shown.map(|(_, line)| line.clone()).collect();
         Ok(Spinning { whirls, critical, critical_to: fastest, campbell, whirling, housed })
+    }
+
+    /// Returns whether nothing rotates; then there are no critical speeds and no Campbell diagram.
+    fn at_rest(&self) -> bool {
+        self.whirling.top_speed == 0.0
     }
 
     /// Suffix of a line for a mode that is not purely radial.
@@ -112,6 +118,9 @@ impl Spinning {
                 self.kind(whirl)
             );
         }
+        if self.at_rest() {
+            return text;
+        }
         let _ = writeln!(
             text,
             "\ncritical speeds up to {:.1} rpm, without damping",
@@ -143,9 +152,10 @@ impl Spinning {
             Warning::new(WarningCode::IndeterminatePosition, text)
         });
         let grows = self.whirls.iter().filter(|whirl| whirl.damping_ratio() < -1e-9);
+        let reduce = if self.at_rest() { "" } else { "the speed, the internal damping or " };
         let grows = grows.map(|whirl| {
             let text = format!(
-                "the whirl of {:.3} Hz grows at {:.1} rpm: reduce the speed, the internal damping or the difference between `yz` and `zy` of a spring, or add damping that does not rotate",
+                "the whirl of {:.3} Hz grows at {:.1} rpm: reduce {reduce}the difference between `yz` and `zy` of a spring, or add damping that does not rotate",
                 whirl.frequency() / TAU,
                 rpm(self.whirling.top_speed)
             );
@@ -180,13 +190,17 @@ impl Spinning {
             section["speed_of"] = json!(body);
         }
         match &self.critical {
+            _ if self.at_rest() => (),
             Ok(all) => section["critical_speeds"] = all.iter().map(critical).collect(),
             Err(why) => section["no_critical_speeds"] = json!(why.to_string()),
         }
         section
     }
 
-    pub fn write(&self, folder: &Path, title: &str) -> Fallible<[PathBuf; 2]> {
+    pub fn write(&self, folder: &Path, title: &str) -> Fallible<Vec<PathBuf>> {
+        if self.at_rest() {
+            return Ok(Vec::new());
+        }
         let picture = folder.join("campbell.svg");
         let critical = self.critical.iter().flatten().map(|critical| critical.speed);
         let critical: Vec<f64> = critical.collect();
@@ -212,6 +226,6 @@ impl Spinning {
         let data = Array2::from_shape_fn((self.campbell.speeds.len(), columns.len()), value);
         let table = folder.join("campbell.csv");
         Series::new(columns, data)?.write_csv(&table)?;
-        Ok([picture, table])
+        Ok(vec![picture, table])
     }
 }

@@ -2,11 +2,12 @@
 
 use bearing_dynamics::equilibrium::quasi_static_sequence::QuasiStaticSequence;
 use bearing_dynamics::motion::simulation::Simulation;
-use bearing_dynamics::numeric::clock::display_time;
+use bearing_dynamics::numeric::clock::{display_time, to_digits};
 use bearing_dynamics::output::recorder::seat::prefix;
 use bearing_dynamics::output::session::{Motion, Session};
 use bearing_dynamics::output::summary::housing::PEAK_PRESSURE;
 use bearing_dynamics::output::table::RunTable;
+use bearing_dynamics::scene::text::units::plain;
 use serde_json::Value;
 
 type Lines = Vec<(String, String)>;
@@ -126,7 +127,10 @@ pub fn rotation(summary: &Value) -> String {
     if let Some(power) = value(friction, "power_loss").filter(|power| *power != 0.0) {
         let torque = value(friction, "torque")
             .map_or(String::new(), |torque| format!(", friction torque {:.4} N mm", 1e3 * torque));
-        lines.push(("friction".into(), format!("power loss {power:.4e} W{torque}")));
+        lines.push((
+            "friction".into(),
+            format!("power loss {} W{torque}", plain(to_digits(power, 5))),
+        ));
     }
     let channels = summary["spectra"]["channels"].as_object();
     for (channel, of) in channels.into_iter().flatten() {
@@ -137,7 +141,8 @@ pub fn rotation(summary: &Value) -> String {
             continue;
         };
         let unit = highest["amplitude"]["unit"].as_str().unwrap_or("");
-        let text = format!("highest peak {frequency:.3} Hz, {amplitude:.4e} {unit}");
+        let text =
+            format!("highest peak {frequency:.3} Hz, {} {unit}", plain(to_digits(amplitude, 5)));
         lines.push((format!("spectrum {channel}"), text));
     }
     lines.iter().map(|(label, value)| format!("{label:<22} {value}\n")).collect()

@@ -79,7 +79,9 @@ impl<'r> Resolver<'r, '_> {
         match of {
             Of::Nodes | Of::NodeSurface => return self.publish_nodes(name, at, members),
             Of::Elements => return self.publish_elements(name, at, members),
-            Of::Surface => self.raw.surface_sets.insert(name, RawSurface { at, faces }),
+            Of::Surface => {
+                self.raw.surface_sets.insert(name, RawSurface { at, faces, lines: Vec::new() })
+            }
         };
         Ok(())
     }
@@ -116,7 +118,8 @@ impl<'r> Resolver<'r, '_> {
             self.raw.element_sets.insert(name.clone(), tets);
         }
         if !faces.is_empty() {
-            self.raw.surface_sets.insert(name.clone(), RawSurface { at, faces });
+            let lines = std::mem::take(&mut nodes);
+            self.raw.surface_sets.insert(name.clone(), RawSurface { at, faces, lines });
         }
         if nodes.is_empty() {
             return Ok(());

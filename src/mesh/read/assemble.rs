@@ -31,6 +31,8 @@ pub enum RawFace {
 pub struct RawSurface {
     pub at: usize,
     pub faces: Vec<RawFace>,
+    /// Nodes of its lines.
+    pub lines: Vec<u64>,
 }
 
 /// A numbered element that is not a tetrahedron.
@@ -240,9 +242,9 @@ impl RawMesh {
         }
         let faces = if self.surface_sets.is_empty() { Vec::new() } else { sorted_faces(&mesh) };
         let mut unusable = std::mem::take(&mut self.unusable);
-        for (name, RawSurface { at, faces: members }) in &self.surface_sets {
+        for (name, RawSurface { at, faces: own, lines }) in &self.surface_sets {
             let mut set = Vec::new();
-            let resolved = members
+            let resolved = own
                 .iter()
                 .try_for_each(|member| self.resolve_face(name, *member, &faces, &mut set));
             if let Err(problem) = resolved {
@@ -252,7 +254,11 @@ impl RawMesh {
             }
             set.sort_unstable();
             set.dedup();
-            mesh.node_sets.insert(name.clone(), mesh.nodes_of_faces(&set));
+            let mut nodes = mesh.nodes_of_faces(&set);
+            nodes.extend(members(name, "node", lines, &self.node_index).map_err(end)?);
+            nodes.sort_unstable();
+            nodes.dedup();
+            mesh.node_sets.insert(name.clone(), nodes);
             mesh.surface_sets.insert(name.clone(), set);
         }
         for (name, tags) in &self.node_sets {

@@ -288,7 +288,7 @@ pub(super) fn place_element(
         Kind::Triangle => {
             let corners = RawFace::Corners([nodes[0], nodes[1], nodes[2]]);
             for group in groups {
-                let surface = RawSurface { at, faces: Vec::new() };
+                let surface = RawSurface { at, faces: Vec::new(), lines: Vec::new() };
                 raw.surface_sets.entry(group.clone()).or_insert(surface).faces.push(corners);
             }
         }

@@ -22,6 +22,7 @@ pub use abaqus::read_abaqus;
 pub use error::{Place, Problem, ReadError};
 pub use gmsh::read_gmsh;
 
+use crate::mesh::error::six_digits;
 use crate::mesh::tet_mesh::TetMesh;
 use std::fmt;
 
@@ -121,13 +122,15 @@ impl fmt::Display for Note {
         match self {
             Note::UnlikelySize { size, unit: LengthUnit::Metre } => write!(
                 f,
-                "the mesh has a size of {size:.4e} m with its numbers in metres; in millimetres it would be {:.4e} m",
-                size * 1e-3
+                "the mesh has a size of {} m with its numbers in metres; in millimetres it would be {} m",
+                six_digits(*size),
+                six_digits(size * 1e-3)
             ),
             Note::UnlikelySize { size, unit: LengthUnit::Millimetre } => write!(
                 f,
-                "the mesh has a size of {size:.4e} m with its numbers in millimetres; in metres it would be {:.4e} m",
-                size * 1e3
+                "the mesh has a size of {} m with its numbers in millimetres; in metres it would be {} m",
+                six_digits(*size),
+                six_digits(size * 1e3)
             ),
             Note::SeveralVolumes { names } => write!(
                 f,

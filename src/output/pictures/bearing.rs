@@ -12,7 +12,7 @@ use crate::output::table::{Moving, RunTable};
 /// Plots that a run can draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Picture {
-    /// Displacements of races and cage, loads of ball 1 and energy residual over time.
+    /// Displacements of races and cage, loads of the most loaded ball and energy residual over time.
     Series,
     /// Races and cage in the Y–Z plane, over the window.
     Orbit,
@@ -85,16 +85,17 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
         add_series(&mut drawn, file, format!("{title}: {name}"), "displacement", "um", curves)?;
     }
     for prefix in &table.bearings {
+        let ball = most_loaded(table, prefix);
         let loads = [
-            ("ball_1_inner_load", "ball 1 on inner race"),
-            ("ball_1_outer_load", "ball 1 on outer race"),
-            ("ball_1_pocket_load", "ball 1 in its pocket"),
-            ("cage_guide_load", "cage on its guide"),
+            (format!("ball_{ball}_inner_load"), format!("ball {ball} on inner race")),
+            (format!("ball_{ball}_outer_load"), format!("ball {ball} on outer race")),
+            (format!("ball_{ball}_pocket_load"), format!("ball {ball} in its pocket")),
+            ("cage_guide_load".into(), "cage on its guide".into()),
         ];
         let loads = loads.map(|(channel, name)| (format!("{prefix}{channel}"), name));
-        let loads = loads.each_ref().map(|(channel, name)| (channel.as_str(), *name));
+        let loads = loads.each_ref().map(|(channel, name)| (channel.as_str(), name.as_str()));
         let curves = over_time(table, &loads, 1.0);
-        let heading = format!("{title}: {}loads", prefix.replace('_', " "));
+        let heading = format!("{title}: {}loads, most loaded ball", prefix.replace('_', " "));
         let file = format!("series_{prefix}loads.svg");
         add_series(&mut drawn, file, heading, "normal load", "N", curves)?;
     }
@@ -116,6 +117,18 @@ fn series(title: &str, table: &RunTable) -> Result<Vec<(String, String)>, PlotEr
     let curves = over_time(table, &works, 1.0);
     add_series(&mut drawn, "series_work.svg".into(), heading, "energy", "J", curves)?;
     Ok(drawn)
+}
+
+/// Number of the ball with the largest load on a race in all rows; 1 without loads.
+fn most_loaded(table: &RunTable, prefix: &str) -> usize {
+    let largest = |ball: usize| {
+        let races = ["inner", "outer"];
+        let loads = races.map(|race| table.all(&format!("{prefix}ball_{ball}_{race}_load")));
+        let largest = |load: Vec<f64>| load.into_iter().fold(0.0, f64::max);
+        loads.into_iter().flatten().map(largest).reduce(f64::max)
+    };
+    let balls = (1..).map_while(|ball| Some((ball, largest(ball)?)));
+    balls.reduce(|most, next| if next.1 > most.1 { next } else { most }).map_or(1, |most| most.0)
 }
 
 pub(super) fn add_series(

@@ -11,7 +11,8 @@ pub struct PolarPlot {
     /// Quantity and unit along the radius, drawn as `quantity [unit]`.
     pub quantity: String,
     pub unit: String,
-    /// Azimuth from +Y towards +Z in rad, value >= 0. Points are joined in order of azimuth; the curve is closed.
+    /// Azimuth from +Y towards +Z in rad, value >= 0. Points are joined in order of azimuth; the closed
+    /// curve is interrupted at gaps wider than three times the usual distance.
     pub curves: Vec<Curve>,
 }
 
@@ -36,6 +37,21 @@ impl PolarPlot {
 
 const CENTRE: Point = (450, 375);
 const RADIUS: f64 = 265.0;
+
+/// Ratio of a gap to the median distance of neighbouring azimuths above which a curve is interrupted.
+const GAP: f64 = 3.0;
+
+/// Indices of the points of each connected piece, from ascending azimuths.
+fn pieces(azimuths: &[f64]) -> Vec<Vec<usize>> {
+    let count = azimuths.len();
+    let after = |at: usize| (azimuths[(at + 1) % count] - azimuths[at]).rem_euclid(TAU);
+    let mut gaps: Vec<f64> = (0..count).map(after).collect();
+    gaps.sort_by(f64::total_cmp);
+    let wide = |at: &usize| after(*at) > GAP * gaps[count / 2];
+    let Some(last) = (0..count).find(wide) else { return vec![(0..count).chain([0]).collect()] };
+    let around: Vec<usize> = (1..=count).map(|next| (last + next) % count).collect();
+    around.split_inclusive(wide).map(<[usize]>::to_vec).collect()
+}
 
 /// Draws the curves around a circle, with the legend below.
 ///
@@ -97,8 +113,13 @@ pub fn polar(plot: &PolarPlot) -> Result<String, PlotError> {
                 points.iter().try_for_each(|&point| canvas::marker(area, index, point))?;
                 continue;
             }
-            let closed = points.iter().copied().chain([points[0]]).collect();
-            canvas::line(area, closed, canvas::colour(index), 3)?;
+            for piece in pieces(&sorted.iter().map(|point| point[0]).collect::<Vec<_>>()) {
+                let piece: Vec<Point> = piece.into_iter().map(|at| points[at]).collect();
+                match piece[..] {
+                    [alone] => canvas::marker(area, index, alone)?,
+                    _ => canvas::line(area, piece, canvas::colour(index), 3)?,
+                }
+            }
             // On a dense curve markers could be mistaken for balls.
             if points.len() <= 40 {
                 canvas::markers(area, index, &points)?;

@@ -120,7 +120,7 @@ pub const TABLE: [Entry; 19] = [
         title: "Load on the open side of an angular-contact bearing",
         meaning: "A ball carries load at a negative contact angle, where the real groove has no shoulder. The real bearing would come apart \
                   there.",
-        action: "Preload the bearing along +x, or turn it round with `reversed`.",
+        action: "Preload the bearing along +x (-x if it is `reversed`), or turn it round with `reversed`.",
     },
     Entry {
         name: "W06-centrifugal-force-left-out",
@@ -199,7 +199,7 @@ pub const TABLE: [Entry; 19] = [
     Entry {
         name: "W17-whirl-unstable",
         title: "Unstable whirl",
-        meaning: "A whirl mode has negative damping at the top speed and grows, usually by internal damping above a critical speed.",
+        meaning: "A whirl mode has negative damping at the speed of the scene and grows, by internal damping above a critical speed or by springs whose `yz` and `zy` differ.",
         action: "Reduce the speed, the internal damping or the difference between `yz` and `zy` of a spring, or add damping that does not rotate.",
     },
     Entry {

@@ -1,7 +1,7 @@
 //! What a scene of bearings can be asked for: its statics, and the parts whose elements move in a run.
 
 use crate::scene::build::about::SetupError;
-use crate::scene::build::assembly::{AssemblyScene, PlacedBearing};
+use crate::scene::build::assembly::{AssemblyScene, PlacedBearing, Spring};
 use crate::scene::resolve::resolved::CageMethod;
 
 impl AssemblyScene {
@@ -28,11 +28,15 @@ impl AssemblyScene {
     /// The first bore with friction; the first spring with a circulatory force.
     pub fn check_statics(&self) -> Result<(), SetupError> {
         self.check_smooth()?;
-        let turns = self.springs.iter().find(|spring| spring.cross.parts()[1] != 0.0);
-        let Some(spring) = turns else { return Ok(()) };
+        let Some(spring) = self.circulatory() else { return Ok(()) };
         let text = "refused: `yz` and `zy` differ, and an equilibrium of an energy has no circulatory force. Hint: `bearing \
                     modes` and `bearing run` include it";
         Err(SetupError::key(&format!("spring.{}.stiffness", spring.name), text))
+    }
+
+    /// The first spring whose `yz` and `zy` differ.
+    pub fn circulatory(&self) -> Option<&Spring> {
+        self.springs.iter().find(|spring| spring.cross.parts()[1] != 0.0)
     }
 
     /// Returns whether elements of rubber move in a run.

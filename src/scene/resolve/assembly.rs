@@ -114,7 +114,7 @@ fn without_bearing(document: &Document) -> Result<Option<Box<Scene>>, SceneError
     if has_bearing || document.names("spring").next().is_none() {
         return Ok(None);
     }
-    let keys = [keys::DEFAULTS, "ball_forces.centrifugal"];
+    let keys = [keys::DEFAULTS, "ball_forces.centrifugal", "numerics.accuracy"];
     let given = keys.into_iter().find(|key| document.is_given(key));
     if let Some(key) = OF_BEARINGS.iter().find_map(|of| document.first_below(of)).or(given) {
         let reason = "the scene has no bearing. Hint: leave it out, or add [bearing]";
@@ -124,12 +124,22 @@ fn without_bearing(document: &Document) -> Result<Option<Box<Scene>>, SceneError
     for (key, value) in STAND_IN {
         stand_in.set(key, value)?;
     }
+    let mut reader = Reader::new(document);
+    let by_rk4 = reader.choice_if_given("numerics.integrator").is_none_or(|of| of == "rk4");
+    let steps =
+        ["numerics.step", "numerics.step_fraction"].iter().any(|key| document.is_given(key));
+    if document.is_given("numerics.end") && by_rk4 && !steps {
+        let reason = "at 0.5 rk4 adds 3 % of critical damping to the fastest mode";
+        reader.number_or("numerics.step_fraction", 0.1, "0.1", reason);
+        stand_in.set("numerics.step_fraction", "0.1")?;
+    }
     let mut scene = resolve_bearing(&stand_in)?;
     let of_all = |used: &DefaultUsed| {
         ["numerics", "output", "sweep"].iter().any(|table| used.key.starts_with(table))
     };
     scene.defaults_used.retain(of_all);
     scene.dynamics.defaults_used.retain(of_all);
+    scene.dynamics.defaults_used.extend(reader.into_defaults_used());
     Ok(Some(Box::new(scene)))
 }
 

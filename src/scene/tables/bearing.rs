@@ -250,7 +250,7 @@ pub(crate) const KEYS: &[Key] = &[
 
     Key::new("output.plots", Kind::Choices(PLOTS),
         Depends("statics: `load-zone`, `polar`; run: `orbit`, `series`, `polar`; solid: `series`, `spectrum`"),
-        "Plots to draw; `[]` for none. Statics draws `load-zone`, `polar` and `moment-tilt`, in a housing `load-zone` only. A run draws `polar` and the others; a quasi-static sequence has no `polar`, `slip-spin` and `run-up`. `run-up` shows the radial displacement of each part with changing speed over that speed."),
+        "Plots to draw; `[]` for none. Statics draws `load-zone`; also `polar` and `moment-tilt` if the scene is one unnamed bearing at the origin with a fixed outer race, not `reversed`, without bodies, springs, foundation and housing. A run draws `polar` and the others; a quasi-static sequence has no `polar`, `slip-spin` and `run-up`. `run-up` shows the radial displacement of each part with changing speed over that speed."),
     Key::new("sweep.of", Kind::Choice(&["statics", "runs"]), Default { value: "statics", reason: "the loads at t = 0" },
         "Results at each point: the equilibrium, or a run in a folder of its own."),
     Key::new("sweep.together", Kind::Boolean, Default { value: "false", reason: "every combination of the values" },

@@ -224,9 +224,9 @@ pub(crate) const KEYS: &[Key] = &[
 
     quantity("numerics.end", Kind::Quantity(Time, above(0.0, 1e4, "s")), Depends("required for a run"), "Time at which the run ends.").hint("a run of seconds takes seconds to minutes; check the unit"),
     quantity("numerics.step", Kind::Quantity(Time, closed(1e-12, 1e-2, "s")), Optional,
-        "Fixed time step; the integrator is `rk4` unless given. Without it, the step follows from `accuracy`.").group("step").hint(STEP_HINT).example_of("1 us"),
+        "Fixed time step; the integrator is `rk4` unless given. Without it, the step follows from `accuracy`, in a scene without bearings from the stability limit.").group("step").hint(STEP_HINT).example_of("1 us"),
     Key::new("numerics.step_fraction", Kind::Number(above(0.0, 1.0, "")),
-        Depends("0.5 with `integrator = \"rk4\"` and no `step`; not allowed with another integrator"),
+        Depends("0.5 with `rk4` and no `step`, 0.1 without bearings; not allowed with another integrator"),
         "Time step divided by the stability limit of `rk4`.").group("step").hint("1 is the stability limit; above it the run fails").example_of("0.5").only(LAW, ELASTIC),
     Key::new("numerics.accuracy", Kind::Number(closed(1e-8, 0.1, "")),
         Depends("0.001 without `step`, `step_fraction` and `rk4`; not allowed with `rk4`"),
@@ -238,7 +238,7 @@ pub(crate) const KEYS: &[Key] = &[
         "Time between output rows.").example_of("0.1 ms"),
     Key::new("numerics.energy_limit", Kind::Number(above(0.0, 1.0, "")), Depends("0.01; with an `accuracy` 0.2"),
         "Largest error of the energy balance, divided by the energy turnover; beyond it the run stops with an error. The turnover is the largest contact energy plus all work and losses; with `accuracy` also the kinetic energy and the energy that passes through the contacts. The balance is checked every 16 steps with `rk4`, otherwise after each step. Five consecutive checks beyond the limit stop the run, in a shorter run the last check.").example_of("0.01").only(LAW, ELASTIC),
-    Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Depends("`rk4` with `step`, `step_fraction` or an explicit housing; otherwise chosen by the plan"),
+    Key::new("numerics.integrator", Kind::Choice(INTEGRATORS), Depends("`rk4` with `step`, `step_fraction` or an explicit housing, or without bearings; otherwise chosen by the plan"),
         "Time integrator: classical Runge-Kutta; the explicit Dormand-Prince method of order 5; a linearly implicit Rosenbrock method for stiff traction and contacts. The latter two take an `accuracy`."),
 
     Key::new("output.channels", Kind::Choices(CHANNELS),

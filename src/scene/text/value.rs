@@ -163,22 +163,13 @@ pub fn check_bare(key: &'static Key, text: &str) -> Result<Checked, Problem> {
     let text = text.trim();
     let value = match key.kind {
         Kind::Integer { .. } | Kind::Number(_) => Value::Number(text.to_string()),
-        Kind::Boolean => match text {
+        Kind::Boolean | Kind::TrueOrProfile(..) => match text {
             "true" => Value::Boolean(true),
             "false" => Value::Boolean(false),
             _ => Value::Text(text.to_string()),
         },
         Kind::Either(_) if parse_number(text).is_ok() => Value::Number(text.to_string()),
-        Kind::Vector(..)
-        | Kind::Choices(_)
-        | Kind::Quantities(..)
-        | Kind::QuantityList(..)
-        | Kind::TrueOrProfile(..) => {
-            return Err(Problem::NotSweepable);
-        }
-        Kind::Text | Kind::Choice(_) | Kind::Quantity(..) | Kind::Profile(..) | Kind::Either(_) => {
-            Value::Text(text.to_string())
-        }
+        _ => Value::Text(text.to_string()),
     };
     check(key, &Node { value, offset: 0 }, false).map_err(|error| error.problem)
 }
