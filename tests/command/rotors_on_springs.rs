@@ -132,7 +132,8 @@ fn the_step_of_a_run_without_bearings_follows_from_the_stability_limit() {
     );
     let out = text(&folder.path().join("run"));
     done(&[&["run", &path, "--out", &out][..], &end].concat());
-    let long = ["--out", &out, "--set", "numerics.step=2 ms"];
+    let out = text(&folder.path().join("long"));
+    let long = ["--out", &out, "--set", "numerics.step=4 ms"];
     let message = refused(&[&["run", &path][..], &end, &long].concat());
     assert!(message.contains("leave it out"), "{message}");
     let accuracy = [&["run", &path, "--set", "numerics.accuracy=0.001"][..], &end].concat();
