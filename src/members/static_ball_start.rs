@@ -18,6 +18,11 @@ pub(crate) fn starting_point(
     let outer_room = contacts.outer.groove_radius - contacts.ball_radius;
     let inner_room = contacts.inner.groove_radius - contacts.ball_radius;
     let outer_centre = [contacts.outer.centre_axial, contacts.outer.centre_radius];
+    // Point on the line that splits the overlap.
+    let split = |line: [f64; 2], overlap: f64| {
+        let outer_distance = outer_room + overlap * contacts.outer_share;
+        [outer_centre[0] + line[0] * outer_distance, outer_centre[1] + line[1] * outer_distance]
+    };
     let mut point = outer_centre;
     let mut line = [0.0, 1.0];
     let mut overlap = 0.0;
@@ -32,11 +37,7 @@ pub(crate) fn starting_point(
             line = [between[0] / distance, between[1] / distance];
         }
         overlap = distance - outer_room - inner_room;
-        let outer_distance = outer_room + overlap * contacts.outer_share;
-        point = [
-            outer_centre[0] + line[0] * outer_distance,
-            outer_centre[1] + line[1] * outer_distance,
-        ];
+        point = split(line, overlap);
     }
     // Overlaps of balls that just touch (a transition fit without load) have random signs by rounding; a few ulps of
     // the radius are no contact.
@@ -48,11 +49,7 @@ pub(crate) fn starting_point(
         let whole = inner.overlap + outer.overlap;
         if whole > rounding {
             overlap = whole;
-            let outer_distance = outer_room + overlap * contacts.outer_share;
-            point = [
-                outer_centre[0] + line[0] * outer_distance,
-                outer_centre[1] + line[1] * outer_distance,
-            ];
+            point = split(line, overlap);
         }
     }
     // A groove has its ball on one side only: a line towards the axis belongs to races too far apart.

@@ -268,6 +268,14 @@ fn a_pack_accepts_its_own_results_and_notices_any_change_to_its_files() {
     }
     fs::write(folder.join("extra.csv"), "x\n1\n").unwrap();
     assert!(matches!(verify_pack(&folder), Err(PackError::Unlisted { .. })));
+    // Only a sweep has no summary.
+    let mut without = manifest.clone();
+    without.sha256.remove("summary.json");
+    fs::write(folder.join("manifest.json"), serde_json::to_string(&without).unwrap()).unwrap();
+    match verify_pack(&folder) {
+        Err(PackError::Incomplete { name }) => assert_eq!(name, "summary.json"),
+        other => panic!("{other:?}"),
+    }
 }
 
 #[test]

@@ -50,8 +50,8 @@ impl Spinning {
     pub fn new(whirling: SmallMotionModel, housed: bool, limit: f64) -> Fallible<Spinning> {
         let top = whirling.top_speed;
         let model = &whirling.model;
-        let speeds = (0..SPEEDS).map(|i| top * i as f64 / (SPEEDS - 1) as f64);
-        let speeds: Vec<f64> = speeds.filter(|_| top != 0.0).collect();
+        let count = if top == 0.0 { 0 } else { SPEEDS };
+        let speeds: Vec<f64> = (0..count).map(|i| top * i as f64 / (SPEEDS - 1) as f64).collect();
         let mut whirls = model.whirls(top, 2 * LINES)?;
         whirls.retain(|whirl| is_whirl(whirl) && whirl.frequency() <= limit);
         whirls.truncate(LINES);
