@@ -2,10 +2,10 @@
 # Everything builds with the one release profile. What tests alone depend on asks more features of packages that all use
 # (approx, bitflags, once_cell): commands are built beside a test, as `make test` has them, or the library would be built twice.
 CARGO ?= cargo
-PACKAGES = -p bearing-dynamics -p verification
+PACKAGES = -p bearing-dynamics -p verification -p bearing-fmu
 VERIFY = $(CARGO) build --release --locked -q $(PACKAGES) --bins --test single_thread && "$${CARGO_TARGET_DIR:-target}/release/verify"
 
-.PHONY: verify verify-full test golden conformance conform bench pareto mutants doc lint fuzz
+.PHONY: verify verify-full test golden conformance conform fmu bench pareto mutants doc lint fuzz
 
 ## Benchmarks of the source against independent oracles; report in target/verify.
 verify:
@@ -45,6 +45,11 @@ conform: conformance
 	$(call ON_THE_SET,bearing,$(BEARING)" {kind} {resolved} --out {out}")
 	$(call ON_THE_SET,python,"$(PYTHON) conformance/example_python/candidate.py {kind} {resolved} {out}")
 	$(call ON_THE_SET,fast,"target/fast/release/fast {kind} {resolved} {out}")
+
+## A bearing as an FMU, checked by FMPy against runs. PYTHON needs fmpy.
+fmu:
+	$(CARGO) build --release --locked -q $(PACKAGES)
+	$(PYTHON) examples/fmu/check.py $(BEARING) "$${CARGO_TARGET_DIR:-target}/release/make-fmu"
 
 ## Kernels under criterion; what an accuracy costs in motion; steps of solids, against plain loops and CalculiX (where installed); bounds fail.
 bench:

@@ -1,6 +1,7 @@
 //! A simulation: the state, its integration in time, and the checks of each step.
 
 use crate::assembly::lists::Assembly;
+use crate::members::body::Body;
 use crate::members::contacts::Kernel;
 use crate::members::rigid_body::Wrench;
 use crate::members::state::{BodyState, Ledger};
@@ -392,19 +393,28 @@ impl Simulation {
     /// Takes the state across a `corner` at the present time: velocities of prescribed motions jump to their values
     /// after it. The drives do the work of the jump, an impulse that the contacts do not feel.
     pub fn cross_corner(&mut self, corner: f64) {
-        let Simulation { system, state, rates, time, .. } = self;
-        if !system.assembly.jolts_at(corner) {
-            system.latest = f64::INFINITY;
+        if self.system.assembly.jolts_at(corner) {
+            self.jump(self.time.max(corner), |system| system.latest = f64::INFINITY);
+        } else {
+            self.system.latest = f64::INFINITY;
             self.take_first_rates();
-            return;
         }
-        let time = time.max(corner);
+    }
+
+    /// Changes loads and prescribed motions of bodies at the present time; positions and velocities may jump. The
+    /// drives do the work of the jump.
+    pub fn change_drives(&mut self, change: impl FnOnce(&mut [Body])) {
+        self.jump(self.time, |system| change(&mut system.assembly.bodies));
+    }
+
+    fn jump(&mut self, time: f64, change: impl FnOnce(&mut System)) {
+        let Simulation { system, state, rates, .. } = self;
         let mut energy = |system: &mut System, state: &[f64]| {
             system.evaluate(time, state, rates);
             system.energy(state).total()
         };
         let before = energy(system, state);
-        system.latest = f64::INFINITY;
+        change(system);
         system.tidy(time, state);
         let after = energy(system, state);
         state[system.places.ledger_entry(Ledger::Drives)] += after - before;

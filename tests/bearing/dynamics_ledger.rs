@@ -4,6 +4,7 @@ use super::dynamics_integrators::{fast, gentle, motion, rolling};
 use crate::{common, dynamics};
 
 use bearing_dynamics::assembly::bearing_alone::DynamicProblem;
+use bearing_dynamics::assembly::lists::INNER;
 use bearing_dynamics::ch2_housing::bearing::cage::{Guidance, Pocket};
 use bearing_dynamics::ch2_housing::bearing::contact::ContactDamping;
 use bearing_dynamics::ch2_housing::bearing::traction::TractionLaw;
@@ -32,6 +33,42 @@ fn losses_agree_between_the_methods() {
             assert!((found / reference - 1.0).abs() <= 2e-3, "{lost:?}");
         }
     }
+}
+
+/// Races that are moved on from outside: the drives' work closes the balance, and balls follow as under one profile.
+#[test]
+fn drives_may_change_within_a_run() {
+    let placed = |z: f64| {
+        let mut problem = bearing(table_4_1(-5e-6), [0.0; 5], 0.0);
+        let at = [0.0, 0.0, z, 0.0, 0.0];
+        problem.inner.drives = at.map(|at| Drive::Motion(Profile::Constant(at)));
+        problem.inner.rotation = Rotation::Speed(Profile::Constant(100.0));
+        problem
+    };
+    let options = RunOptions { stepping: Stepping::Fixed(2e-7), ..RunOptions::default() };
+    let mut moved = Simulation::new(placed(0.0), options).unwrap();
+    let before = moved.snapshot();
+    moved.change_drives(|bodies| {
+        bodies[INNER].driven_mut().unwrap().drives[2] = Drive::Motion(Profile::Constant(-2e-6));
+    });
+    let state = {
+        let mut state = Simulation::new(placed(0.0), options).unwrap().state;
+        System::new(placed(-2e-6), Kernel::Simd).tidy(0.0, &mut state);
+        state
+    };
+    let mut begun = Simulation::from_state(placed(-2e-6), options, state, 0.0).unwrap();
+    for _ in 0..500 {
+        moved.step().unwrap();
+        begun.step().unwrap();
+    }
+    let all_but_the_ledger = begun.system.places.ledger();
+    assert_eq!(moved.state[..all_but_the_ledger], begun.state[..all_but_the_ledger]);
+    let after = moved.snapshot();
+    let work = after.ledger[Ledger::Drives as usize] - before.ledger[Ledger::Drives as usize];
+    // Displaced by two fifths of the overlap, balls take up energy of the size of what they held.
+    assert!(work.abs() >= 0.1 * before.energy.contact, "{work:e} of {:e} J", before.energy.contact);
+    // Integrated to (ωh)⁴; the jump itself has no error.
+    assert!(after.residual.abs() <= 1e-6 * work.abs(), "{:e} of {work:e} J", after.residual);
 }
 
 const ENTRIES: [Ledger; 5] = [
