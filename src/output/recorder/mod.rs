@@ -1,6 +1,8 @@
 //! Time series of a run: columns of all its parts, and the rows recorded so far.
 
 mod bearing;
+mod channels;
+mod energy;
 mod quasi_static;
 mod rubber;
 pub mod seat;
@@ -15,7 +17,7 @@ use crate::output::session::{Parts, SessionError};
 use crate::plan::channels::ChannelGroup;
 use crate::plan::counts::Counts;
 use crate::scene::build::solid::{NamedNodes, Support};
-use bearing::BearingColumns;
+use channels::BearingColumns;
 use ndarray::Array2;
 
 /// Rows of the time series, in memory; the memory for all rows is allocated at the start.

@@ -21,7 +21,7 @@ pub(super) fn columns(problem: &QuasiStaticProblem, with_loads: bool) -> Vec<Col
         place(format!("{}{}", bearings[bearing].prefix(), RACES[side]));
     }
     problem.assembly.bodies.iter().filter_map(|body| body.label.clone()).for_each(place);
-    columns.extend(super::bearing::probe_columns(&problem.assembly));
+    columns.extend(super::channels::probe_columns(&problem.assembly));
     for bearing in bearings {
         for race in RACES {
             let name = |axis| format!("{}contact_force_on_{race}_{axis}", bearing.prefix());

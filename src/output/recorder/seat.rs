@@ -1,6 +1,6 @@
 //! Columns of housing fits, the same for every housing method, and of housings in explicit steps.
 
-use super::{Recorder, bearing::connection_columns, shaft, solid::check_finite};
+use super::{Recorder, channels::connection_columns, shaft, solid::check_finite};
 use crate::ch2_housing::bore_contact::ContactSum;
 use crate::kinematics::vec3::Vec3;
 use crate::members::rigid_body::Wrench;
