@@ -22,7 +22,10 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     match make(Path::new(scene), Path::new(out)) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => {
+            println!("wrote {out}");
+            ExitCode::SUCCESS
+        }
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::from(2)
@@ -52,7 +55,11 @@ fn make(scene: &Path, out: &Path) -> Result<(), Box<dyn Error>> {
         (format!("resources/scene.{kind}"), document.text().as_bytes().to_vec()),
     ];
     for (name, text) in document.bases() {
-        if !Path::new(&name).components().all(|part| matches!(part, Component::Normal(_))) {
+        // A base is read beside the scene that is packed.
+        let beside = scene.with_file_name(&name);
+        if !std::fs::read_to_string(&beside).is_ok_and(|found| found == text)
+            || !Path::new(&name).components().all(|part| matches!(part, Component::Normal(_)))
+        {
             return Err(format!(
                 "{name} is outside the folder of the scene; put it next to the scene"
             )
@@ -60,7 +67,9 @@ fn make(scene: &Path, out: &Path) -> Result<(), Box<dyn Error>> {
         }
         files.push((format!("resources/{name}"), text.as_bytes().to_vec()));
     }
-    let mut archive = ZipWriter::new(File::create(out)?);
+    let mut archive = File::create(out)
+        .map(ZipWriter::new)
+        .map_err(|error| format!("cannot write {}: {error}", out.display()))?;
     for (name, bytes) in files {
         archive.start_file(name, SimpleFileOptions::default())?;
         archive.write_all(&bytes)?;

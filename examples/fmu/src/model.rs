@@ -25,7 +25,7 @@ pub enum ModelError {
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error(
-        "an FMU has one bearing between two rigid races, and a cage without modes; the scene has other parts"
+        "an FMU has one bearing between two rigid races; bodies, housings, sensors and flexible cages are not taken"
     )]
     OtherParts,
     #[error("numerics: missing; an FMU needs its step control, as a run does")]
