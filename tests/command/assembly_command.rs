@@ -138,6 +138,14 @@ fn columns(folder: &Path) -> Vec<String> {
     names.iter().map(|c| c["name"].as_str().expect("a name").to_string()).collect()
 }
 
+/// Names of the columns and rows of `series.csv`.
+fn table(folder: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+    let content = read(&folder.join("series.csv"));
+    let numbers =
+        |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    (columns(folder), content.lines().skip(1).map(numbers).collect())
+}
+
 #[test]
 fn a_run_settles_nowhere_else_than_statics_and_resumes_with_the_same_bytes() {
     let folder = folder();
@@ -158,7 +166,20 @@ fn a_run_settles_nowhere_else_than_statics_and_resumes_with_the_same_bytes() {
     }
     let summary = json(&Path::new(&one).join("summary.json"));
     assert_eq!(summary["complete"], true);
-    assert!(summary["extremes"]["left"].is_object() && summary["extremes"]["right"].is_object());
+    // Of each bearing's own balls: no row shows more, and rows are dense enough to show nearly all.
+    let (_, rows) = table(Path::new(&one));
+    for bearing in ["left", "right"] {
+        for race in ["inner", "outer"] {
+            let own =
+                |name: &str| name.starts_with(bearing) && name.ends_with(&format!("_{race}_load"));
+            let loads = names.iter().enumerate().filter(|(_, name)| own(name));
+            let shown =
+                loads.flat_map(|(at, _)| rows.iter().map(move |row| row[at])).fold(0.0, f64::max);
+            let of = &summary["extremes"][bearing][format!("{race}_race")]["largest_load"]["load"];
+            let most = value(of);
+            assert!(most >= shown && most <= 1.1 * shown, "{bearing} {race}: {most} {shown}");
+        }
+    }
     // It starts at the equilibrium of statics; without traction and cage nothing moves it far away.
     let still = place(&statics(&whole), "shaft");
     let shaft = value(&summary["final"]["shaft_z"]);

@@ -168,6 +168,21 @@ fn absolute_damping_of_a_shaft_damps_all_motion_alike() {
     assert_whirl(&damped, &mut expected, 1e-6);
 }
 
+/// Damping that does not rotate takes energy out of every motion, at any speed.
+#[test]
+fn damping_against_the_ground_destabilises_no_whirl() {
+    let shipped = read(Path::new(&scene("rotor_on_springs.toml")));
+    let dense = "density = \"7810 kg/m^3\"";
+    for moved in ["absolute", "relative-to-rigid"] {
+        let damping = format!("{dense}\ndamping = \"50 1/s\"\ndamped_motion = \"{moved}\"");
+        for speed in ["6000 rpm", "-9000 rpm"] {
+            let found = whirl(&shipped.replace("4000 rpm", speed).replace(dense, &damping));
+            assert!(found.len() >= 6, "{found:?}");
+            assert!(found.iter().all(|[_, ratio, _]| *ratio > 0.0), "{moved} {speed}: {found:?}");
+        }
+    }
+}
+
 /// A bent shaft shortens towards its centre of mass: with its left end held along the axis and its load in the middle,
 /// the middle moves by ½ ∫ w'² of the left half, w' = F (L² − 4 x²)/(16 E I).
 #[test]

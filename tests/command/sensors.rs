@@ -197,3 +197,89 @@ fn readings_at_lines_are_those_of_their_bins() {
     let often = [-1, 0, 1].map(|offset| offsets.get(&offset).copied().unwrap_or(0));
     assert!(often.iter().all(|count| *count >= 5) && offsets.len() == 3, "{offsets:?}");
 }
+
+/// Both offsets are vectors of their own: across each other they are not as along each other.
+#[test]
+fn each_offset_of_a_telemeter_has_its_own_angle() {
+    let root = tempdir().unwrap();
+    let first = |offset: &str, runout: &str| {
+        let angles = format!(
+            "offset = \"1.27 mm\"\noffset_angle = \"{offset}\"\nrunout = \"1.27 mm\"\nrunout_angle = \"{runout}\""
+        );
+        let content = changed(&short("2 ms"), "offset = \"1.27 mm\"\nrunout = \"0.1 mm\"", &angles);
+        let path = write(root.path(), "angles.toml", &content);
+        let out = root.path().join(format!("{offset}{runout}"));
+        done(&["run", &path, "--out", &text(&out)]);
+        let rows = read(&out.join("series.csv"));
+        let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let names = lines.next().unwrap();
+        let at = names.iter().position(|name| name.starts_with("telemeter_reflection")).unwrap();
+        lines.next().unwrap()[at].parse::<f64>().unwrap()
+    };
+    let [along, across, other] =
+        [["0 deg", "0 deg"], ["0 deg", "90 deg"], ["90 deg", "0 deg"]].map(|[a, b]| first(a, b));
+    // The cage has not turned yet: only the distance of the two axes counts, 0 or √2 · 1.27 mm.
+    assert!((across - other).abs() <= 1e-3 * (across - along).abs(), "{along} {across} {other}");
+    assert!((across - along).abs() >= 1e-4, "{along} {across}");
+    let turned = first("90 deg", "90 deg");
+    assert!((turned - along).abs() <= 1e-3 * (across - along).abs(), "{along} {turned}");
+}
+
+/// The whirl of a cage is about the axis of an outer race that moves.
+#[test]
+fn whirl_of_a_cage_follows_from_its_columns() {
+    let root = tempdir().unwrap();
+    let content = changed(
+        &short("20 ms"),
+        "x = { load = \"-445 N\" }\n",
+        "x = { load = \"-445 N\" }\nz = { load = \"-200 N\" }\n",
+    );
+    let content =
+        content.replace("y = \"1e8 N/m\"\nz = \"1e8 N/m\"", "y = \"1e6 N/m\"\nz = \"1e6 N/m\"");
+    let path = write(root.path(), "soft.toml", &content);
+    let out = root.path().join("out");
+    done(&["run", &path, "--out", &text(&out)]);
+    let rows = read(&out.join("series.csv"));
+    let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let names = lines.next().unwrap();
+    let index = |name: &str| names.iter().position(|own| own.starts_with(name)).unwrap();
+    let at = ["time", "cage_y", "cage_z", "outer_y", "outer_z"].map(index);
+    let window: Vec<[f64; 2]> = lines
+        .map(|line| at.map(|i| line[i].parse::<f64>().unwrap()))
+        .filter(|[time, ..]| *time >= 1e-3)
+        .map(|[_, cage_y, cage_z, outer_y, outer_z]| [cage_y - outer_y, cage_z - outer_z])
+        .collect();
+    let count = window.len() as f64;
+    let distance = window.iter().map(|[y, z]| y.hypot(*z)).sum::<f64>() / count;
+    let mean = [0, 1].map(|i| window.iter().map(|at| at[i]).sum::<f64>() / count);
+    let turned = |a: &[f64; 2], b: &[f64; 2]| {
+        let by = b[1].atan2(b[0]) - a[1].atan2(a[0]);
+        by - std::f64::consts::TAU * (by / std::f64::consts::TAU).round()
+    };
+    let turns: f64 = window.windows(2).map(|pair| turned(&pair[0], &pair[1])).sum();
+    let summary = json(&out.join("summary.json"));
+    let expected = [
+        ("cage_mean_distance", distance),
+        ("cage_rest", mean[0].hypot(mean[1]) / distance),
+        ("cage_whirl_turns", turns / std::f64::consts::TAU),
+    ];
+    for (name, expected) in expected {
+        let found = leaf(&summary, name).unwrap_or_else(|| panic!("{name}: {summary}"));
+        // Nine digits of columns that are thousands of times the distance.
+        assert!(
+            (found - expected).abs() <= 1e-6 * expected.abs().max(1e-3),
+            "{name}: {found} {expected}"
+        );
+    }
+}
+
+/// The number of this name, wherever it is in a summary.
+fn leaf(of: &serde_json::Value, name: &str) -> Option<f64> {
+    match of {
+        serde_json::Value::Object(map) => {
+            let own = map.get(name).and_then(|found| found["value"].as_f64());
+            own.or_else(|| map.values().find_map(|below| leaf(below, name)))
+        }
+        _ => None,
+    }
+}

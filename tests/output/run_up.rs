@@ -30,3 +30,19 @@ fn a_turn_has_its_once_per_turn_part_and_its_peaks() {
     assert!(turns(&[100.0; 100], &[1.0; 100], 0.25 * std::f64::consts::TAU / 100.0).is_empty());
     assert!(turns(&[], &[], 1.0).is_empty());
 }
+
+/// A turn backwards has the amplitudes of one forwards.
+#[test]
+fn turns_of_either_sense_are_alike() {
+    let speed: Vec<f64> = (0..5000).map(|row| 200.0 + 1e-2 * row as f64).collect();
+    let values: Vec<f64> = (0..5000).map(|row| (0.02 * row as f64).sin()).collect();
+    let back: Vec<f64> = speed.iter().map(|speed| -speed).collect();
+    let [forwards, backwards] = [&speed, &back].map(|speed| turns(speed, &values, 1e-4));
+    assert!(forwards.len() >= 15, "{}", forwards.len());
+    assert_eq!(forwards.len(), backwards.len());
+    for (forwards, backwards) in forwards.iter().zip(&backwards) {
+        assert_eq!(forwards.half_peak_to_peak, backwards.half_peak_to_peak);
+        assert_eq!(forwards.once_per_turn, backwards.once_per_turn);
+        assert_eq!(forwards.speed.abs(), backwards.speed.abs());
+    }
+}
