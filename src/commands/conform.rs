@@ -90,19 +90,25 @@ struct Verdict {
     unclaimed: Vec<String>,
     /// Wall time of the program and of this one, s.
     seconds: [f64; 2],
-    /// Hash of the pack and of the command.
+    /// Hash of the pack, of the command and of the files that it names.
     key: String,
+    /// Taken from an earlier run.
+    #[serde(skip)]
+    earlier: bool,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let packs = packs(arguments)?;
     if packs.is_empty() {
-        return Err(format!(
-            "{}: no case packs with these tags and level",
-            arguments.set.display()
-        )
-        .into());
+        let set = arguments.set.display();
+        let why = match arguments.set.join(MANIFEST).exists() {
+            true => "is one case pack. Hint: name the folder that holds it".into(),
+            false => {
+                format!("no case packs with these tags and level; tags are {}", tags(arguments)?)
+            }
+        };
+        return Err(format!("{set}: {why}").into());
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.into()).build()?;
     let verdicts: Result<Vec<Verdict>, String> = pool.install(|| {
@@ -130,12 +136,30 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     })
 }
 
+/// All tags of a set.
+fn tags(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
+    let all = manifests(arguments)?;
+    let tags: BTreeSet<String> = all.into_iter().flat_map(|(_, of)| of.about.tags).collect();
+    Ok(tags.into_iter().collect::<Vec<_>>().join(", "))
+}
+
 /// Names and manifests of the packs asked for.
 fn packs(arguments: &Arguments) -> Result<Vec<(String, Manifest)>, Box<dyn Error>> {
+    let claimed: BTreeSet<&String> = arguments.tags.iter().collect();
+    let mut found = manifests(arguments)?;
+    found.retain(|(_, Manifest { about, .. })| {
+        let level = arguments.level.is_none_or(|level| level == about.level);
+        level && (claimed.is_empty() || about.tags.iter().all(|tag| claimed.contains(tag)))
+    });
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    Ok(found)
+}
+
+/// Names and manifests of all packs of the set.
+fn manifests(arguments: &Arguments) -> Result<Vec<(String, Manifest)>, Box<dyn Error>> {
     let mut found = Vec::new();
     let entries = std::fs::read_dir(&arguments.set)
         .map_err(|error| format!("cannot read {}: {error}", arguments.set.display()))?;
-    let claimed: BTreeSet<&String> = arguments.tags.iter().collect();
     for entry in entries {
         let folder = entry?.path();
         if !folder.join(MANIFEST).exists() {
@@ -143,15 +167,9 @@ fn packs(arguments: &Arguments) -> Result<Vec<(String, Manifest)>, Box<dyn Error
         }
         let manifest =
             verify_pack(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let about = &manifest.about;
-        let level = arguments.level.is_none_or(|level| level == about.level);
-        let tagged = claimed.is_empty() || about.tags.iter().all(|tag| claimed.contains(tag));
-        if level && tagged {
-            let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            found.push((name, manifest));
-        }
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        found.push((name, manifest));
     }
-    found.sort_by(|a, b| a.0.cmp(&b.0));
     Ok(found)
 }
 
@@ -166,7 +184,7 @@ fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box
     // The program behind the same command may be another by now.
     let kept = |known: &Verdict| known.key == key && known.status == Status::Passed;
     if let Some(known) = known.filter(kept) {
-        return Ok(known);
+        return Ok(Verdict { earlier: true, ..known });
     }
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder)?;
@@ -183,15 +201,22 @@ fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box
         seconds[1] = run(&own, "ours")?.seconds;
         let _ = std::fs::remove_dir_all(folder.join("ours"));
     }
-    let verdict = Verdict { name: name.into(), about, status, says, unclaimed, seconds, key };
+    let verdict =
+        Verdict { name: name.into(), about, status, says, unclaimed, seconds, key, earlier: false };
     write_atomic(&path, pretty(&serde_json::to_value(&verdict)?).as_bytes())?;
     Ok(verdict)
 }
 
-/// Hash of a pack and of the command that is run on it.
+/// Hash of a pack, of the command that is run on it, and of the files that the command names: the program may have been
+/// built again.
 fn key(arguments: &Arguments, pack: &Path) -> Result<String, Box<dyn Error>> {
     let manifest = std::fs::read(pack.join(MANIFEST))?;
-    let hash = Sha256::new().chain_update(manifest).chain_update(&arguments.with);
+    let mut hash = Sha256::new().chain_update(manifest).chain_update(&arguments.with);
+    for word in arguments.with.split_whitespace().map(|word| word.trim_matches(['\'', '"'])) {
+        if Path::new(word).is_file() {
+            hash.update(std::fs::read(word)?);
+        }
+    }
     let hash = hash.chain_update(arguments.timeout.to_le_bytes()).finalize();
     Ok(hash.iter().map(|byte| format!("{byte:02x}")).collect())
 }
@@ -310,6 +335,9 @@ fn line(of: &Verdict) -> String {
     if !of.unclaimed.is_empty() {
         let _ = write!(text, "; without {}", of.unclaimed.join(", "));
     }
+    if of.earlier {
+        text += "; of an earlier run";
+    }
     if !of.says.is_empty() {
         let _ = write!(text, "\n             {}", of.says);
     }
@@ -352,6 +380,17 @@ fn page(arguments: &Arguments, verdicts: &[Verdict], table: &str) -> String {
         arguments.with,
         verdicts.len()
     );
+    let earlier = verdicts.iter().filter(|of| of.earlier).count();
+    if earlier > 0 {
+        let _ = writeln!(text, "\n{earlier} results are of an earlier run of the same program.");
+    }
+    let mut partly = verdicts.iter().filter(|of| !of.unclaimed.is_empty()).peekable();
+    if partly.peek().is_some() {
+        text += "\n## Groups of channels left out\n\n| Pack | Without |\n|---|---|\n";
+        for of in partly {
+            let _ = writeln!(text, "| {} | {} |", of.name, of.unclaimed.join(", "));
+        }
+    }
     let missed: Vec<&Verdict> = verdicts.iter().filter(|of| of.status != Status::Passed).collect();
     if !missed.is_empty() {
         text +=

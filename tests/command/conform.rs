@@ -77,6 +77,36 @@ fn this_program_passes_its_own_set() {
     assert_eq!(tagged.len(), 2);
 }
 
+/// A program that is built anew is another one, although its command is the same.
+#[test]
+fn a_changed_program_is_run_again() {
+    let (root, set) = set();
+    let program = write(
+        root.path(),
+        "program.sh",
+        &CLAIM_ALL.replace("{out}", "\"$2\"").replace("{resolved}", "\"$1\""),
+    );
+    let (with, out) = (format!("sh '{program}' {{resolved}} {{out}}"), root.path().join("out"));
+    let run = || conform(&set, &with, &out, &["--tags", "statics"]);
+    let of_earlier = "of an earlier run";
+    assert_eq!(run().1[0].1, "passed");
+    assert!(!read(&out.join("report.md")).contains(of_earlier));
+    assert_eq!(run().1[0].1, "passed");
+    assert!(read(&out.join("report.md")).contains(of_earlier));
+    write(root.path(), "program.sh", "exit 1");
+    assert_eq!(run().1[0].1, "failed");
+
+    let refused = |set: &Path, further: &[&str]| {
+        let (set, out) = (text(set), text(&out));
+        let all = [&["conform", &set, "--with", "true", "--out", &out], further].concat();
+        crate::command_line_common::refused(&all)
+    };
+    let said = refused(&set, &["--tags", "static"]);
+    assert!(said.contains("tags are modes, refused, run, statics, sweep"), "{said}");
+    let said = refused(&set.join("tilted"), &[]);
+    assert!(said.contains("is one case pack"), "{said}");
+}
+
 /// Frequencies of a list, as a book prints them; in the second case one is 2e-3 off.
 #[test]
 fn printed_entries_of_lists_are_compared() {
