@@ -36,6 +36,12 @@ pub struct Energy {
 }
 
 impl Energy {
+    /// Sum of the sizes of all terms, J.
+    pub fn held(&self) -> f64 {
+        // Only gravity has a sign.
+        self.total() - self.gravity + self.gravity.abs()
+    }
+
     pub fn total(&self) -> f64 {
         self.kinetic
             + self.contact

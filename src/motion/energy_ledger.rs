@@ -84,7 +84,9 @@ impl Balance {
         let now = self.snapshot(system, state, time);
         let turned_over = self.turned_over(&now, options);
         // Bodies that have touched nothing have rounding errors only.
-        if turned_over == 0.0 || self.watch.record(now.residual, turned_over, options.energy_limit)
+        let held = now.energy.held();
+        if turned_over == 0.0
+            || self.watch.record(now.residual, turned_over, held, options.energy_limit)
         {
             return Ok(());
         }
@@ -121,7 +123,8 @@ impl Balance {
         let every = if options.integrator == Integrator::RungeKutta { CHECK_EVERY } else { 1 };
         let turned_over = self.turned_over(last, options);
         let is_told = steps >= u64::from(MOST_OPEN) * every || turned_over == 0.0;
-        if is_told || self.watch.closes(last.residual, turned_over, options.energy_limit) {
+        let (held, limit) = (last.energy.held(), options.energy_limit);
+        if is_told || self.watch.closes(last.residual, turned_over, held, limit) {
             return Ok(());
         }
         Err(self.unaccounted(last.residual, options, last.time, steps))

@@ -189,7 +189,7 @@ mod ledger_watch {
     /// Rows on end that are seen until a run ends, at most a hundred.
     fn rows_seen(residual: f64, turned_over: f64) -> usize {
         let mut watch = LedgerWatch::default();
-        (0..100).take_while(|_| watch.record(residual, turned_over, 0.2)).count()
+        (0..100).take_while(|_| watch.record(residual, turned_over, 0.0, 0.2)).count()
     }
 
     /// Looks that are open now and then end no run, those on end do.
@@ -197,10 +197,21 @@ mod ledger_watch {
     fn a_single_blow_ends_no_run() {
         let mut watch = LedgerWatch::default();
         for round in 0..20 {
-            let open = (1..MOST_OPEN).all(|_| watch.record(1.0, 2.0, 0.2));
-            assert!(open && watch.record(0.1, 2.0, 0.2), "{round}");
+            let open = (1..MOST_OPEN).all(|_| watch.record(1.0, 2.0, 0.0, 0.2));
+            assert!(open && watch.record(0.1, 2.0, 0.0, 0.2), "{round}");
         }
         assert_eq!((watch.largest_residual, watch.turned_over), (1.0, 2.0));
+    }
+
+    /// Rounding of the energy that a loaded shaft holds at rest ends no run; a millionth of it does.
+    #[test]
+    fn rounding_of_what_is_held_is_no_loss() {
+        let rows = |residual: f64| {
+            let mut watch = LedgerWatch::default();
+            (0..100).take_while(|_| watch.record(residual, 1e-18, 0.03, 0.01)).count()
+        };
+        assert_eq!(rows(2e-17), 100);
+        assert!(rows(3e-8) < 10);
     }
 
     /// As of a rotor at rest in elements, whose load comes later: 1.6e-23 J of 3.3e-23 J.

@@ -164,7 +164,7 @@ impl Recorder {
         }
         let snapshot = housed.snapshot()?;
         let residual = snapshot.residual;
-        if !watch.record(residual, snapshot.turned_over, limit) {
+        if !watch.record(residual, snapshot.turned_over, snapshot.turned_over, limit) {
             let turned_over = watch.turned_over;
             return Err(SessionError::EnergyOfBoth {
                 residual,

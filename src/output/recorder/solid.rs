@@ -58,7 +58,7 @@ impl Recorder {
         let (external, damping) = (ledger.external_work, ledger.damping_work);
         let residual = ledger.balance() - watch.first;
         let turned_over = (strain + kinetic).max(external.abs()).max(damping.abs());
-        if !watch.record(residual, turned_over, limit) {
+        if !watch.record(residual, turned_over, strain + kinetic, limit) {
             let turned_over = watch.turned_over;
             return Err(SessionError::Energy { residual, turned_over, limit, time, step });
         }
