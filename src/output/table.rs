@@ -11,6 +11,9 @@ use crate::output::session::Session;
 use crate::output::spectrum::{Spectrum, envelope_spectrum, spectrum};
 use std::ops::Range;
 
+/// A mean speed below this one, rad/s, is rounding: one turn in two hundred years.
+const LEAST_SPEED: f64 = 1e-9;
+
 /// All rows of a run, and the window for means and spectra.
 #[derive(Clone, Debug)]
 pub struct RunTable {
@@ -63,6 +66,10 @@ impl Moving {
         let speed = format!("{column}_speed");
         Moving { column, title, speed }
     }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Bodies of the bearings with these prefixes, then labelled bodies, then probes.
@@ -176,20 +183,28 @@ impl RunTable {
         Some(acquire(&rows, self.window.clone(), self.interval, &sensor.acquisition))
     }
 
+    /// Mean speeds of the inner and the outer race of a bearing over the window, rad/s; zero below [`LEAST_SPEED`].
+    pub fn race_speeds(&self, prefix: &str) -> Option<[f64; 2]> {
+        let speed = |side: &str| {
+            let mean = mean(&self.windowed(&format!("{prefix}{side}_speed"))?);
+            Some(if mean.abs() < LEAST_SPEED { 0.0 } else { mean })
+        };
+        Some([speed("inner")?, speed("outer").unwrap_or(0.0)])
+    }
+
     /// Defect lines of each bearing at its mean speeds over the window; bearings whose races have no recorded speed, or
     /// stand still, have none.
     pub fn defect_lines(&self) -> Vec<BearingLines> {
         let of = |(prefix, geometry): (&String, &BearingGeometry)| {
             let windowed = |channel: &str| self.windowed(&format!("{prefix}{channel}"));
-            let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
             let inner = windowed("inner_speed").filter(|of| !of.is_empty())?;
             let outer = windowed("outer_speed").unwrap_or_else(|| vec![0.0; inner.len()]);
-            let speeds = [mean(&inner), mean(&outer)];
+            let speeds = self.race_speeds(prefix)?;
             let relative = inner.iter().zip(&outer).map(|(inner, outer)| inner - outer);
             let (low, high) = relative
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), of| (a.min(of), b.max(of)));
             let mean_relative = (speeds[0] - speeds[1]).abs();
-            if mean_relative.is_nan() || mean_relative <= 0.0 {
+            if mean_relative.is_nan() || mean_relative < LEAST_SPEED {
                 return None;
             }
             let angle = |side: &str| {

@@ -1,7 +1,9 @@
 //! `bearing pack CASE`: a case pack, or with a list of cases a set of them.
 
+mod neighbours;
 mod set;
 mod solved;
+mod spread;
 mod tolerances;
 
 use super::earlier::{Writes, claimed};

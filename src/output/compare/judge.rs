@@ -5,7 +5,7 @@ use crate::output::compare::tolerance::{
     RequestedTolerance, Tolerance, ToleranceClass, ToleranceError, Tolerances, turn,
 };
 use crate::output::compare::{
-    ChannelResult, CompareError, Comparison, Divergence, DivergenceKind, Options, Worst,
+    ChannelResult, CompareError, Comparison, Divergence, DivergenceKind, Options, Spread, Worst,
     is_about_steps, is_default_of_key, is_ignored_by_name, unloaded,
 };
 use crate::output::series::Series;
@@ -157,6 +157,7 @@ impl<'a> Judge<'a> {
             checked: 0,
             differing: 0,
             worst: None,
+            spread: Spread::default(),
         });
         tolerance
     }
@@ -199,6 +200,15 @@ impl<'a> Judge<'a> {
         }
     }
 
+    /// Notes a difference of channel number `index` that is none of two numbers.
+    fn unequal(&mut self, index: usize, order: Order, place: String, kind: DivergenceKind) {
+        let result = &mut self.channels[index];
+        result.differing += 1;
+        result.spread.unlike += 1;
+        let (channel, unit) = (result.channel.clone(), result.unit.clone());
+        self.diverge(order, &channel, &unit, place, kind);
+    }
+
     /// Compares two numbers of channel number `index` in `self.channels`.
     fn real(
         &mut self,
@@ -227,6 +237,8 @@ impl<'a> Judge<'a> {
         };
         let result = &mut self.channels[index];
         result.checked += 1;
+        result.spread.scale = scale;
+        result.spread.add(reference, difference);
         if result.worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
             result.worst = Some(Worst { place: place(), difference, allowed, ratio });
         }
@@ -268,8 +280,7 @@ impl<'a> Judge<'a> {
                 Some(_) => None,
             };
             if let Some(kind) = kind {
-                self.channels[index].differing += 1;
-                self.diverge((0, position), name, unit, String::new(), kind);
+                self.unequal(index, (0, position), String::new(), kind);
                 continue;
             }
             let scale = scales[&(vector_stem(name), unit)];
@@ -289,9 +300,7 @@ impl<'a> Judge<'a> {
             if rows != found_rows && !is_cut {
                 let shorter = rows.min(found_rows);
                 let kind = DivergenceKind::Length { reference: rows, candidate: found_rows };
-                self.channels[index].differing += 1;
-                let place = format!("row {}", shorter + 1);
-                self.diverge((shorter + 1, position), name, unit, place, kind);
+                self.unequal(index, (shorter + 1, position), format!("row {}", shorter + 1), kind);
             }
         }
         if left_out {
@@ -340,15 +349,12 @@ impl<'a> Judge<'a> {
                 if self.is_unclaimed(channel, &absent) {
                     continue;
                 }
-                self.channels[index].differing += 1;
-                let kind = DivergenceKind::MissingChannel;
-                self.diverge(order, channel, &leaf.unit, place(), kind);
+                self.unequal(index, order, place(), DivergenceKind::MissingChannel);
                 continue;
             };
             if let Some(kind) = self.unlike(leaf, other) {
                 self.channels[index].checked += 1;
-                self.channels[index].differing += 1;
-                self.diverge(order, channel, &leaf.unit, place(), kind);
+                self.unequal(index, order, place(), kind);
                 continue;
             }
             match (&leaf.value, other.value.as_real()) {
@@ -400,11 +406,9 @@ impl<'a> Judge<'a> {
         for leaf in candidate.iter().filter(|leaf| !known.contains(leaf.path.as_str())) {
             match opened.get(leaf.channel.as_str()) {
                 Some(Some((index, _))) if !self.tolerances.partial => {
-                    self.channels[*index].differing += 1;
                     let order = (reference.len() + 1, 0);
-                    let place = tree_label(&leaf.path);
                     let kind = DivergenceKind::OnlyInCandidate;
-                    self.diverge(order, &leaf.channel, &leaf.unit, place, kind);
+                    self.unequal(*index, order, tree_label(&leaf.path), kind);
                 }
                 Some(_) => {}
                 None if listed.insert(leaf.channel.as_str()) => {

@@ -40,6 +40,9 @@ pub const PROGRAM_NAME: &str = "program.name";
 /// Values whose name, or the name of a part above them, starts with this are never compared (wall time).
 pub const IGNORED_PREFIX: &str = "seconds";
 
+/// Share of its channel's scale below which a value counts as zero in [`Spread`].
+pub const SMALL: f64 = 1e-6;
+
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Class of channels that the tolerances do not name; takes precedence over the one in the file.
@@ -134,6 +137,43 @@ pub struct ChannelResult {
     pub differing: usize,
     /// Largest ratio of difference to tolerance; `None` for strings and integers.
     pub worst: Option<Worst>,
+    pub spread: Spread,
+}
+
+/// Size of a channel's differences, from which tolerances are measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Differences that are none of two numbers: texts, counts, missing values, units.
+    pub unlike: usize,
+    /// Scale of the channel: its largest |reference|, shared by the components of one vector.
+    pub scale: f64,
+    pub largest: f64,
+    /// Largest difference of values below [`SMALL`] of the scale.
+    pub of_small: f64,
+    /// Largest difference of the others, over |reference|.
+    pub relative: f64,
+}
+
+impl Spread {
+    fn add(&mut self, reference: f64, difference: f64) {
+        self.largest = self.largest.max(difference);
+        if reference.abs() < SMALL * self.scale {
+            self.of_small = self.of_small.max(difference);
+        } else if difference > 0.0 {
+            self.relative = self.relative.max(difference / reference.abs());
+        }
+    }
+
+    /// The larger of each.
+    pub fn or(self, other: Spread) -> Spread {
+        Spread {
+            unlike: self.unlike.max(other.unlike),
+            scale: self.scale.max(other.scale),
+            largest: self.largest.max(other.largest),
+            of_small: self.of_small.max(other.of_small),
+            relative: self.relative.max(other.relative),
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -82,7 +82,7 @@ impl ToleranceClass {
 }
 
 /// Small but ordinary value of a quantity in a bearing; the absolute floor is a fraction of it.
-/// Zero for dimensionless and unknown units: no floor unless `tolerances.json` has one.
+/// Zero for unknown units: no floor unless `tolerances.json` has one.
 fn ordinary_magnitude(unit: &str) -> f64 {
     match unit {
         // A position 30 mm from the axis is rounded by up to 7e-18 m in each operation. An approach
@@ -105,6 +105,7 @@ fn ordinary_magnitude(unit: &str) -> f64 {
         "Hz" | "rad/s" => 1e-3,   // far below any bearing frequency
         "m/s" | "m/s^2" => 1e-3,  // a slow vibration
         "kg" | "J" => 1e-6,       // far below a ball's mass and energy
+        "1" => 1e-3,              // a small ratio: damping, slip
         _ => 0.0,
     }
 }

@@ -117,8 +117,7 @@ fn kinematics_of(bearing: &Bearing, table: &RunTable) -> Result<Option<Value>, R
         let values = table.windowed(&format!("{prefix}{channel}"))?;
         Some(values.iter().sum::<f64>() / values.len() as f64)
     };
-    let Some(inner) = mean("inner_speed") else { return Ok(None) };
-    let outer = mean("outer_speed").unwrap_or(0.0);
+    let Some([inner, outer]) = table.race_speeds(&prefix) else { return Ok(None) };
     if inner == 0.0 && outer == 0.0 {
         return Ok(None);
     }

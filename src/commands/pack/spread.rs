@@ -1,0 +1,191 @@
+//! Largest differences of results to others that are as right, and the tolerances that follow.
+
+use super::Fallible;
+use super::solved::{Kind, Solved};
+use bearing_dynamics::output::compare::tolerance::{ChannelTolerance, ToleranceClass, Tolerances};
+use bearing_dynamics::output::compare::{self, Options, compare};
+use bearing_dynamics::output::pack::expected;
+use bearing_dynamics::output::results::pretty;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Least tolerance of forces over the largest force, and of moments over that times the largest length: ten times the
+/// residual at which the search ends.
+const OF_SEARCH: f64 = 1e-10;
+/// A relative tolerance is written where it is at most this many times the share of the scale that would do: then it
+/// is tighter for the small values of a list, and not much wider for the large ones.
+const RELATIVE_UP_TO: f64 = 3.0;
+/// A channel is left out if its tolerance would be more than this share of its scale: half a value says nothing.
+const WIDEST: f64 = 0.5;
+/// A channel this small next to the largest value of its unit is zero but for rounding; it is compared with a floor.
+const NEARLY_ZERO: f64 = 1e-3;
+
+type Channels = BTreeMap<String, ChannelTolerance>;
+
+/// Largest differences of a channel, and their largest ratio to the tolerance of the class.
+#[derive(Clone, Default)]
+struct Found {
+    unit: String,
+    ratio: f64,
+    spread: compare::Spread,
+}
+
+/// Largest differences to other results, channel by channel.
+pub struct Spread {
+    class: ToleranceClass,
+    kind: Kind,
+    /// First rows of tables that count; `None` for all.
+    pub rows: Option<usize>,
+    reference: tempfile::TempDir,
+    largest: BTreeMap<String, Found>,
+    magnitudes: Magnitudes,
+}
+
+impl Spread {
+    pub fn new(kind: Kind, class: ToleranceClass, solved: &Solved) -> Fallible<Spread> {
+        let reference = tempfile::tempdir()?;
+        lay(kind, solved, reference.path())?;
+        let mut magnitudes = Magnitudes::default();
+        for channel in compare(reference.path(), reference.path(), &Options::default())?.channels {
+            let largest = magnitudes.0.entry(channel.unit).or_default();
+            *largest = channel.spread.scale.max(*largest);
+        }
+        let largest = BTreeMap::new();
+        Ok(Spread { class, kind, rows: None, reference, largest, magnitudes })
+    }
+
+    pub fn add(&mut self, other: &Solved) -> Fallible<()> {
+        let folder = tempfile::tempdir()?;
+        lay(self.kind, other, folder.path())?;
+        let tolerances =
+            Tolerances { class: Some(self.class), rows: self.rows, ..Tolerances::default() };
+        let options = Options { tolerances: Some(tolerances), ..Options::default() };
+        for channel in compare(self.reference.path(), folder.path(), &options)?.channels {
+            let found = self.largest.entry(channel.channel).or_default();
+            found.unit = channel.unit;
+            found.ratio = channel.worst.map_or(0.0, |worst| worst.ratio).max(found.ratio);
+            found.spread = found.spread.or(channel.spread);
+        }
+        Ok(())
+    }
+
+    /// Channels that another program cannot be expected to meet: measures of the solution process, and of runs which
+    /// of several nearly equal values was the largest, which steps and rounding decide.
+    pub fn left_out(&self) -> Fallible<Channels> {
+        let why = |channel: &str| {
+            let place = ["ball", "time", "contact_angle"];
+            let last = channel.rsplit('.').next().unwrap_or_default();
+            if channel.contains("residual") || channel.contains("solver") {
+                Some("a measure of the solution process")
+            } else if channel.starts_with("extremes.") && place.contains(&last) {
+                Some("rounding decides which of several nearly equal values is the largest")
+            } else {
+                None
+            }
+        };
+        let all = self.channels()?.into_iter();
+        Ok(all.filter_map(|(name, _)| why(&name).map(|why| (name, ignored(why.into())))).collect())
+    }
+
+    /// Tolerances of the channels that differ by more than the class allows, divided by `factor`.
+    pub fn tolerances(&self, factor: f64, reason: &str) -> Channels {
+        let of = |(channel, found): (&String, &Found)| {
+            Some((channel.clone(), self.tolerance(found, factor, reason)?))
+        };
+        self.largest.iter().filter_map(of).collect()
+    }
+
+    fn tolerance(&self, found: &Found, factor: f64, reason: &str) -> Option<ChannelTolerance> {
+        let compare::Spread { unlike, scale, largest, of_small, relative } = found.spread;
+        let class = self.class.tolerance(&found.unit)?;
+        if unlike > 0 {
+            return Some(ignored("it differs between results that are as right".into()));
+        }
+        if factor * found.ratio <= 1.0 {
+            return None;
+        }
+        let needed = factor * largest;
+        let nearly_zero = NEARLY_ZERO * self.magnitudes.of(&found.unit);
+        let mut own = ChannelTolerance { reason: Some(reason.into()), ..Default::default() };
+        if scale <= nearly_zero && needed <= nearly_zero {
+            own.absolute_floor = Some(needed.max(class.absolute_floor));
+        } else if needed > WIDEST * scale {
+            let percent = 100.0 * largest / scale;
+            return Some(ignored(format!(
+                "not determined: {percent:.0} % of its scale between results that are as right"
+            )));
+        } else if relative * scale <= RELATIVE_UP_TO * largest {
+            own.relative = Some((factor * relative).max(class.relative));
+            let floor = (factor * of_small).max(class.absolute_floor);
+            own.absolute_floor = (floor > class.absolute_floor).then_some(floor);
+        } else {
+            own.scale_relative = Some((needed / scale).max(class.scale_relative));
+        }
+        Some(own)
+    }
+
+    /// Raises the floors of forces and moments to what a search leaves.
+    pub fn add_floors(&self, channels: &mut Channels) -> Fallible<()> {
+        for (name, unit) in self.channels()? {
+            if !["N", "N m"].contains(&unit.as_str()) {
+                continue;
+            }
+            let floor = OF_SEARCH * self.magnitudes.of(&unit);
+            let class = self.class.tolerance(&unit).map_or(0.0, |class| class.absolute_floor);
+            let own = channels.get(&name).and_then(|own| own.absolute_floor).unwrap_or(class);
+            if floor > own {
+                let own = channels.entry(name).or_default();
+                if own.class != Some(ToleranceClass::Ignored) {
+                    own.absolute_floor = Some(floor);
+                    own.reason.get_or_insert_with(|| "ten times the residual of a search".into());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Channels of the reference with their units.
+    fn channels(&self) -> Fallible<Vec<(String, String)>> {
+        let of = self.reference.path();
+        let all = compare(of, of, &Options::default())?.channels.into_iter();
+        Ok(all.map(|channel| (channel.channel, channel.unit)).collect())
+    }
+}
+
+fn ignored(reason: String) -> ChannelTolerance {
+    ChannelTolerance {
+        class: Some(ToleranceClass::Ignored),
+        reason: Some(reason),
+        ..ChannelTolerance::default()
+    }
+}
+
+/// Largest value of each unit.
+#[derive(Default)]
+struct Magnitudes(BTreeMap<String, f64>);
+
+impl Magnitudes {
+    /// Largest value of this unit, or of what units of it are made of: a moment is a force on the largest length.
+    fn of(&self, unit: &str) -> f64 {
+        let largest = |unit: &str| self.0.get(unit).copied().unwrap_or(0.0);
+        let length = largest("m").max(1e-3 * largest("mm"));
+        let made = match unit {
+            "N m" => largest("N") * length,
+            "N/rad" | "N m/m" => largest("N/m") * length,
+            "N m/rad" => largest("N/m") * length * length,
+            _ => 0.0,
+        };
+        largest(unit).max(made)
+    }
+}
+
+/// What a pack would have of these results.
+fn lay(kind: Kind, solved: &Solved, folder: &Path) -> Fallible<()> {
+    if let Some(summary) = expected(&solved.summary) {
+        std::fs::write(folder.join("summary.json"), pretty(&summary))?;
+    }
+    for (name, content) in solved.tables(kind)? {
+        std::fs::write(folder.join(name), content)?;
+    }
+    Ok(())
+}
