@@ -116,11 +116,12 @@ fn only_the_sweep_knows_of_threads() {
     };
     let mut found: Vec<_> = sources.into_iter().filter(knows).collect();
     found.sort();
-    // Programs on packs side by side; what watches a long factorisation and sleeps between its looks; a sweep, a solid that is asked for
+    // Programs on packs and packs of a set side by side; what watches a long factorisation and sleeps between its looks; a sweep, a solid that is asked for
     // threads, seeded faults and cases side by side.
     let known = [
         "src/commands/conform.rs",
         "src/commands/memory.rs",
+        "src/commands/pack/set.rs",
         "src/commands/sweep/mod.rs",
         "src/commands/sweep/runs.rs",
         "src/solids/threads.rs",

@@ -2,6 +2,7 @@
 
 use super::{CommandResult, Outcome, print};
 use bearing_dynamics::output::atomic::write_atomic;
+use bearing_dynamics::output::compare::tolerance::Tolerances;
 use bearing_dynamics::output::compare::{Options, compare, report};
 use bearing_dynamics::output::json;
 use bearing_dynamics::output::pack::{About, MANIFEST, Manifest, RESOLVED, verify_pack};
@@ -88,6 +89,8 @@ struct Verdict {
     says: String,
     /// Tags of which the program has no channels.
     unclaimed: Vec<String>,
+    /// Number of first rows that were compared, of a chaotic run.
+    rows: Option<usize>,
     /// Wall time of the program and of this one, s.
     seconds: [f64; 2],
     /// Hash of the pack, of the command and of the files that it names.
@@ -201,8 +204,10 @@ fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box
         seconds[1] = run(&own, "ours")?.seconds;
         let _ = std::fs::remove_dir_all(folder.join("ours"));
     }
+    let rows = Tolerances::read(&pack.join("tolerances.json"))?.rows;
+    let name = name.to_string();
     let verdict =
-        Verdict { name: name.into(), about, status, says, unclaimed, seconds, key, earlier: false };
+        Verdict { name, about, status, says, unclaimed, rows, seconds, key, earlier: false };
     write_atomic(&path, pretty(&serde_json::to_value(&verdict)?).as_bytes())?;
     Ok(verdict)
 }
@@ -335,6 +340,9 @@ fn line(of: &Verdict) -> String {
     if !of.unclaimed.is_empty() {
         let _ = write!(text, "; without {}", of.unclaimed.join(", "));
     }
+    if let Some(rows) = of.rows {
+        let _ = write!(text, "; chaotic, first {rows} rows and statistics");
+    }
     if of.earlier {
         text += "; of an earlier run";
     }
@@ -383,6 +391,14 @@ fn page(arguments: &Arguments, verdicts: &[Verdict], table: &str) -> String {
     let earlier = verdicts.iter().filter(|of| of.earlier).count();
     if earlier > 0 {
         let _ = writeln!(text, "\n{earlier} results are of an earlier run of the same program.");
+    }
+    for of in verdicts {
+        let Some(rows) = of.rows else { continue };
+        let _ = writeln!(
+            text,
+            "\n{} is chaotic: its first {rows} rows are compared, and statistics.",
+            of.name
+        );
     }
     let mut partly = verdicts.iter().filter(|of| !of.unclaimed.is_empty()).peekable();
     if partly.peek().is_some() {

@@ -17,6 +17,8 @@ pub enum JsonError {
     Input(#[from] InputError),
     #[error("it has more than {MOST_VALUES} values; store tables in .csv or .npy files")]
     TooMany,
+    #[error("JSON has no NaN or Infinity, which the file contains: {0}")]
+    NotFinite(serde_json::Error),
     #[error(transparent)]
     Syntax(#[from] serde_json::Error),
 }
@@ -37,7 +39,11 @@ pub fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
     if count_values(bytes) > MOST_VALUES {
         return Err(JsonError::TooMany);
     }
-    Ok(serde_json::from_slice(bytes)?)
+    let has = |word: &[u8]| bytes.windows(word.len()).any(|of| of == word);
+    serde_json::from_slice(bytes).map_err(|error| match has(b"NaN") || has(b"Infinity") {
+        true => JsonError::NotFinite(error),
+        false => error.into(),
+    })
 }
 
 /// Upper limit of the number of values in a JSON text: one, and one more for each comma and opening bracket outside

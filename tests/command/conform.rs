@@ -149,6 +149,10 @@ fn programs_that_leave_out_or_take_too_long_are_named() {
     let (code, failed, says) = status("echo out of luck; exit 4", &[]);
     assert_eq!((code, failed.as_str()), (1, "failed"));
     assert!(says.contains("out of luck"), "{says}");
+    let nan =
+        "mkdir -p {out} && echo '{\"x\": NaN}' > {out}/summary.json && touch {out}/series.csv";
+    let (_, _, says) = status(nan, &["--tags", "modes"]);
+    assert!(says.contains("has no NaN"), "{says}");
     let (_, status, says) = status("mkdir -p {out}", &[]);
     assert_eq!(status, "failed", "{says}");
     // All channels of a tag may be absent, one alone not.
@@ -336,4 +340,33 @@ fn a_chaotic_run_is_compared_by_its_statistics() {
         }
     });
     assert!(code == 1 && said.contains("window.channels.inner_z.mean"), "{said}");
+    let out = root.path().join("out");
+    assert_eq!(conform(Path::new(&set), CLAIM_ALL, &out, &[]).0, 0);
+    let page = read(&out.join("report.md"));
+    assert!(page.contains(&format!("its first {rows} rows are compared")), "{page}");
+}
+
+/// The speed of a race that may tilt freely is rounding: there is no friction torque and no slip to divide by it. The
+/// ball and the time of the largest load are those of one of equal balls, and not compared.
+#[test]
+fn a_race_at_rest_has_no_speed_and_equal_balls_no_first() {
+    let root = tempdir().unwrap();
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance/scenes/level2/free_tilting.toml");
+    let list = format!(
+        "[[case]]\nname = \"tilting\"\nscene = {:?}\nof = \"run\"\ntags = []\nlevel = 2\nset = [\"numerics.end=1 ms\"]\n",
+        text(&path)
+    );
+    let list = write(root.path(), "list.toml", &list);
+    let set = root.path().join("set");
+    done(&["pack", &list, "--out", &text(&set)]);
+    let summary = json(&set.join("tilting/summary.json"));
+    assert!(summary["friction"]["power_loss"]["value"].as_f64().unwrap() > 0.0, "{summary}");
+    assert!(summary["friction"]["torque"].is_null() && summary["kinematics"].is_null());
+    let channels = &json(&set.join("tilting/tolerances.json"))["channels"];
+    for place in ["ball", "time"] {
+        let channel = format!("extremes.inner_race.largest_load.{place}");
+        assert_eq!(channels[&channel]["class"], "ignored", "{channel}");
+    }
+    assert!(channels["extremes.inner_race.largest_load.load"]["class"].is_null());
 }

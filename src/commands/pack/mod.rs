@@ -28,6 +28,9 @@ pub struct Arguments {
     /// Folder of the pack [default: packs/<name of the scene>]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Packs of a list at a time
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
 }
 
 pub fn run(arguments: &Arguments) -> CommandResult {
@@ -35,7 +38,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("packs").join(stem));
     if let Some(cases) = set::read(&path)? {
-        return set::write(&cases, &path, &folder);
+        return set::write(&cases, &path, &folder, arguments.jobs);
     }
     let folder = claimed(&folder, Writes::Pack)?;
     let document = Document::read_file(&path)?;

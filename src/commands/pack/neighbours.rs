@@ -63,9 +63,9 @@ fn scaled(scene: &Value, factors: &[(&str, f64)], tables: &[&str]) -> Option<Val
     let changed = match tables {
         [] => in_tables(&mut other, &scale),
         _ => {
-            let found = tables.iter().map(|table| {
-                other.get_mut(*table).is_some_and(|table| in_tables(table, &scale))
-            });
+            let found = tables
+                .iter()
+                .map(|table| other.get_mut(*table).is_some_and(|table| in_tables(table, &scale)));
             found.fold(false, |any, found| any | found)
         }
     };

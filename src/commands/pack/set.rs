@@ -20,6 +20,7 @@ use crate::commands::earlier::{Writes, claimed};
 use crate::commands::{CommandResult, Outcome, print};
 use bearing_dynamics::output::compare::tolerance::{ChannelTolerance, Tolerances};
 use bearing_dynamics::output::pack::{About, PackInput, write_pack};
+use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -65,15 +66,16 @@ pub fn read(path: &Path) -> Fallible<Option<Cases>> {
 }
 
 /// Writes all packs, each in a folder of its name.
-pub fn write(cases: &Cases, list: &Path, folder: &Path) -> CommandResult {
+pub fn write(cases: &Cases, list: &Path, folder: &Path, jobs: u16) -> CommandResult {
     let list_folder = list.parent().unwrap_or(Path::new("."));
-    let mut failed = Vec::new();
-    for case in &cases.case {
-        match write_case(case, list_folder, &folder.join(&case.name)) {
-            Ok(count) => print(&format!("{}: {count} files\n", case.name))?,
-            Err(error) => failed.push(format!("{}: {error}", case.name)),
-        }
-    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.into()).build()?;
+    let one = |case: &Case| -> Result<(), String> {
+        write_case(case, list_folder, &folder.join(&case.name))
+            .and_then(|count| Ok(print(&format!("{}: {count} files\n", case.name))?))
+            .map_err(|error| format!("{}: {error}", case.name))
+    };
+    let each = cases.case.par_iter().map(|case| one(case).err());
+    let failed: Vec<String> = pool.install(|| each.flatten_iter().collect());
     print(&format!("wrote {} packs to {}\n", cases.case.len() - failed.len(), folder.display()))?;
     match failed.is_empty() {
         true => Ok(Outcome::Done),

@@ -69,16 +69,20 @@ impl Spread {
         Ok(())
     }
 
-    /// Channels that another program cannot be expected to meet: measures of the solution process, and of runs which
-    /// of several nearly equal values was the largest, which steps and rounding decide.
+    /// Channels that another program cannot be expected to meet: measures of the solution process; which of several
+    /// nearly equal values was the largest, which rounding decides; the last moment of a chaotic run.
     pub fn left_out(&self) -> Fallible<Channels> {
         let why = |channel: &str| {
             let place = ["ball", "time", "contact_angle"];
             let last = channel.rsplit('.').next().unwrap_or_default();
             if channel.contains("residual") || channel.contains("solver") {
                 Some("a measure of the solution process")
+            } else if channel == "warnings" {
+                Some("warnings are those of this program")
             } else if channel.starts_with("extremes.") && place.contains(&last) {
                 Some("rounding decides which of several nearly equal values is the largest")
+            } else if channel.starts_with("final.") && self.rows.is_some() {
+                Some("neighbouring runs part before")
             } else {
                 None
             }
