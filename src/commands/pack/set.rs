@@ -71,7 +71,7 @@ pub fn write(cases: &Cases, list: &Path, folder: &Path, jobs: u16) -> CommandRes
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.into()).build()?;
     let one = |case: &Case| -> Result<(), String> {
         write_case(case, list_folder, &folder.join(&case.name))
-            .and_then(|count| Ok(print(&format!("{}: {count} files\n", case.name))?))
+            .and_then(|count| print(&format!("{}: {count} files\n", case.name)))
             .map_err(|error| format!("{}: {error}", case.name))
     };
     let each = cases.case.par_iter().map(|case| one(case).err());
