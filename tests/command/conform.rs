@@ -28,13 +28,20 @@ fn set() -> (TempDir, PathBuf) {
             "set = [\"numerics.end=2 ms\", \"numerics.output_interval=0.1 ms\"]",
         ),
         case("moments", &scene("deep_groove_moment.toml"), "sweep", 1, ""),
+        case(
+            "runs",
+            &scene("varying_compliance_run.toml"),
+            "sweep",
+            2,
+            "set = [\"sweep.of=runs\", \"numerics.end=2 ms\", \"output.window_start=1 ms\"]",
+        ),
         case("whirl", &scene("rotor_on_springs.toml"), "modes", 4, ""),
         case("colour", "bad.toml", "refused", 1, "line = 5\nkey = \"bearing.colour\""),
     ];
     let list = write(root.path(), "list.toml", &list.concat());
     let folder = root.path().join("set");
     let said = done(&["pack", &list, "--out", &text(&folder)]);
-    assert!(said.contains("wrote 5 packs"), "{said}");
+    assert!(said.contains("wrote 6 packs"), "{said}");
     (root, folder)
 }
 
@@ -63,7 +70,7 @@ fn this_program_passes_its_own_set() {
     let out = root.path().join("out");
     let (code, rows) = conform(&set, &own, &out, &[]);
     assert!(rows.iter().all(|(_, status, _)| status == "passed"), "{rows:?}");
-    assert_eq!((code, rows.len()), (0, 5));
+    assert_eq!((code, rows.len()), (0, 6));
     let page = read(&out.join("report.md"));
     assert!(page.contains("level 1") && page.contains("tag modes"), "{page}");
     // What is done is not done again.

@@ -46,11 +46,15 @@ impl Solved {
             Kind::Sweep => {
                 let checked = bearing(&["check", &scene_text, "--json"], changes)?;
                 let scene = serde_json::from_slice::<Value>(&checked)?["scene"].take();
-                if scene["sweep"]["of"] == "runs" {
-                    return Err("a sweep of runs is packed run by run, with --of run".into());
-                }
                 bearing(&solve, changes)?;
-                json!({ "scene": scene })
+                // Only a sweep of runs has one.
+                let summary = out.join("summary.json");
+                let mut summary = match summary.exists() {
+                    true => json::read(&summary)?,
+                    false => json!({}),
+                };
+                summary["scene"] = scene;
+                summary
             }
             _ => {
                 bearing(&solve, changes)?;
@@ -71,6 +75,11 @@ impl Solved {
         let path = copy.path().join("scene.json");
         std::fs::write(&path, scene.to_string())?;
         Solved::of(kind, &path, &[])
+    }
+
+    /// Returns whether the results are those of runs.
+    pub fn is_of_runs(&self, kind: Kind) -> bool {
+        kind == Kind::Run || self.summary["kind"] == "sweep of runs"
     }
 
     pub fn results(&self) -> PathBuf {

@@ -1,4 +1,4 @@
-//! Largest differences of results to others that are as right, and the tolerances that follow.
+//! Largest differences of results to others that are equally right, and the tolerances that follow.
 
 use super::Fallible;
 use super::solved::{Kind, Solved};
@@ -103,7 +103,7 @@ impl Spread {
         let compare::Spread { unlike, scale, largest, of_small, relative } = found.spread;
         let class = self.class.tolerance(&found.unit)?;
         if unlike > 0 {
-            return Some(ignored("it differs between results that are as right".into()));
+            return Some(ignored("it differs between results that are equally right".into()));
         }
         if factor * found.ratio <= 1.0 {
             return None;
@@ -116,7 +116,7 @@ impl Spread {
         } else if needed > WIDEST * scale {
             let percent = 100.0 * largest / scale;
             return Some(ignored(format!(
-                "not determined: {percent:.0} % of its scale between results that are as right"
+                "not determined: {percent:.0} % of its scale between results that are equally right"
             )));
         } else if relative * scale <= RELATIVE_UP_TO * largest {
             own.relative = Some((factor * relative).max(class.relative));

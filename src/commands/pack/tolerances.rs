@@ -13,10 +13,10 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Class of channels without a tolerance of their own: the same equations in double precision, or by another integrator.
-fn class_of(kind: Kind) -> ToleranceClass {
-    match kind {
-        Kind::Run => ToleranceClass::Integrated,
-        Kind::Statics | Kind::Modes | Kind::Sweep => ToleranceClass::F64Reordered,
+fn class_of(of_runs: bool) -> ToleranceClass {
+    match of_runs {
+        true => ToleranceClass::Integrated,
+        false => ToleranceClass::F64Reordered,
     }
 }
 
@@ -53,7 +53,8 @@ pub fn tags() -> BTreeMap<String, Vec<String>> {
 }
 
 pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<Tolerances> {
-    let class = class_of(kind);
+    let of_runs = solved.is_of_runs(kind);
+    let class = class_of(of_runs);
     let mut all = Tolerances { class: Some(class), tags: tags(), ..Tolerances::default() };
     let scene = &solved.summary["scene"];
     let again = |scene: Value| Solved::again(kind, &scene, files);
@@ -61,16 +62,18 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     let mut others = alike(scene).into_iter().map(again).collect::<Fallible<Vec<Solved>>>()?;
     let (mut factor, mut reason) =
         (OF_ERRORS, "times the difference to other rounding or shorter elements".to_string());
-    if kind == Kind::Run {
+    if of_runs {
         for finer in finer(scene) {
             others.push(again(finer)?);
         }
+        reason = "times the difference to other rounding or finer steps".into();
+    }
+    if kind == Kind::Run {
         let neighbour = neighbour(scene).map(again).transpose()?;
         let parts = match &neighbour {
             Some(neighbour) => rows_alike(solved, neighbour)?.is_some(),
             None => false,
         };
-        reason = "times the difference to other rounding or finer steps".into();
         if parts {
             for start in starts(scene) {
                 others.push(again(start)?);
@@ -88,7 +91,7 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     }
     others.iter().try_for_each(|other| spread.add(other))?;
     all.channels = spread.tolerances(factor, &format!("{factor} {reason}"));
-    if kind != Kind::Run {
+    if !of_runs {
         spread.add_floors(&mut all.channels)?;
     }
     all.channels.extend(spread.left_out()?);
