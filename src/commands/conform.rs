@@ -1,6 +1,6 @@
 //! `bearing conform SET --with COMMAND`: runs a program on every pack of a set and compares its results.
 
-use super::{CommandResult, Outcome, print};
+use super::{CommandResult, Outcome, interruption, print};
 use bearing_dynamics::output::atomic::write_atomic;
 use bearing_dynamics::output::compare::tolerance::Tolerances;
 use bearing_dynamics::output::compare::{Options, compare, report};
@@ -15,6 +15,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Exit code of a program that does not claim a pack.
@@ -113,12 +114,13 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         };
         return Err(format!("{set}: {why}").into());
     }
+    let interrupted = interruption(|| std::process::exit(1))?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.into()).build()?;
     let verdicts: Result<Vec<Verdict>, String> = pool.install(|| {
         let each = packs.into_par_iter();
         each.map(|(name, manifest)| {
-            let verdict =
-                judge(arguments, &name, manifest.about).map_err(|e| format!("{name}: {e}"))?;
+            let verdict = judge(arguments, &name, manifest.about, &interrupted)
+                .map_err(|e| format!("{name}: {e}"))?;
             print(&line(&verdict)).map_err(|error| error.to_string())?;
             Ok(verdict)
         })
@@ -177,7 +179,12 @@ fn manifests(arguments: &Arguments) -> Result<Vec<(String, Manifest)>, Box<dyn E
 }
 
 /// Runs the program on a pack, or takes what an earlier command found.
-fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box<dyn Error>> {
+fn judge(
+    arguments: &Arguments,
+    name: &str,
+    about: About,
+    interrupted: &AtomicBool,
+) -> Result<Verdict, Box<dyn Error>> {
     let pack = arguments.set.join(name);
     let folder = arguments.out.join(name);
     let path = folder.join("verdict.json");
@@ -193,8 +200,9 @@ fn judge(arguments: &Arguments, name: &str, about: About) -> Result<Verdict, Box
     std::fs::create_dir_all(&folder)?;
     let timeout = Duration::try_from_secs_f64(arguments.timeout)
         .map_err(|_| format!("--timeout {}: allowed are seconds from 0", arguments.timeout))?;
+    let until = (timeout, interrupted);
     let run =
-        |command: &str, out: &str| execute(command, &pack, &about.kind, &folder.join(out), timeout);
+        |command: &str, out: &str| execute(command, &pack, &about.kind, &folder.join(out), until);
     let found = run(&arguments.with, "out")?;
     let (status, says, unclaimed) = verdict(&pack, &about.kind, &folder.join("out"), &found)?;
     let mut seconds = [found.seconds, 0.0];
@@ -245,7 +253,7 @@ fn execute(
     pack: &Path,
     kind: &str,
     out: &Path,
-    timeout: Duration,
+    (timeout, interrupted): (Duration, &AtomicBool),
 ) -> Result<Executed, Box<dyn Error>> {
     let quoted = |path: &Path| format!("'{}'", path.display());
     let scene = ["scene.toml", "scene.json"].map(|name| pack.join(name));
@@ -271,12 +279,16 @@ fn execute(
         if let Some(status) = child.try_wait()? {
             break (status.code(), false);
         }
-        if start.elapsed() > timeout {
+        let ends = interrupted.load(Ordering::Relaxed);
+        if ends || start.elapsed() > timeout {
             // The shell is the first of its group; what it has started ends with it.
             let group = format!("-{}", child.id());
             let _ = Command::new("kill").args(["-KILL", "--", &group]).status();
             let _ = child.kill();
             child.wait()?;
+            if ends {
+                return Err("interrupted; the same command continues".into());
+            }
             break (None, true);
         }
         std::thread::sleep(GLANCE);

@@ -2,7 +2,7 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `scene.toml` or `scene.json` | the scene as written by the user |
+//! | `scene.toml` or `scene.json` | the scene as written by the user; with changed keys as in `resolved.json` |
 //! | meshes and bases | files that the scene refers to, in folders of the same names |
 //! | `resolved.json` | the scene as one file that can be read, in SI: bases merged, defaults filled in |
 //! | `summary.json`, `series.csv`, … | the expected results, without what describes the solution process |
@@ -120,7 +120,19 @@ pub fn expected(summary: &Value) -> Option<Value> {
     let mut kept = summary.clone();
     let parts = kept.as_object_mut()?;
     parts.retain(|name, _| !NOT_PACKED.contains(&name.as_str()));
-    (!parts.is_empty()).then_some(kept)
+    if parts.is_empty() {
+        return None;
+    }
+    without_process(&mut kept);
+    Some(kept)
+}
+
+/// Removes meshes and solvers of housings and shafts.
+fn without_process(value: &mut Value) {
+    if let Some(parts) = value.as_object_mut() {
+        parts.retain(|name, _| !["mesh", "solver"].contains(&name.as_str()));
+        parts.values_mut().for_each(without_process);
+    }
 }
 
 /// Writes the pack and returns its manifest.
@@ -217,10 +229,15 @@ pub fn verify_pack(folder: &Path) -> Result<Manifest, PackError> {
 }
 
 fn readme(input: &PackInput) -> String {
+    let rows = input.tolerances.rows.map(|rows| {
+        format!(
+            "The run is chaotic: the first {rows} rows of tables are compared, and statistics.\n"
+        )
+    });
     format!(
         "Case pack: a scene, and the expected results for checking another program.
 
-1. Solve {scene} ({kind}) with your program. resolved.json is the same scene as one file in SI, with its defaults.
+1. Solve resolved.json ({kind}) with your program. {scene} is the same scene, as written or with changed keys.
 2. Write summary.json and the tables in the same format into a folder, say candidate.
 3. Run, from the folder that holds this one:
 
@@ -229,13 +246,14 @@ fn readme(input: &PackInput) -> String {
    (with the name of this folder for pack/). Exit code 0: equal within tolerance; 1: different,
    with the first difference; 2: a file could not be read.
 
-tolerances.json has the tolerances and their reasons. manifest.json has the sha256 of every file. If a ball has no load in both
+{rows}tolerances.json has the tolerances and their reasons. manifest.json has the sha256 of every file. If a ball has no load in both
 contacts of the reference, its position, approaches (gaps) and contact angles are not compared
 either (except in class f64-exact), because they are not determined. Angles are in degrees, all other
 quantities in SI units, as in the headers.
 ",
         scene = input.scene_name,
         kind = input.about.kind,
+        rows = rows.unwrap_or_default(),
     )
 }
 

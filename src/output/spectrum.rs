@@ -18,7 +18,7 @@ pub const WINDOW: &str = "Hann";
 pub const MAIN_LOBE: usize = 4;
 /// Highest side lobe of the window, dB.
 pub const SIDE_LOBES: i32 = -31;
-pub const LEAKAGE: &str = "mean removed, Hann window: main lobe 4 bins wide, side lobes from -31 dB \
+pub const LEAKAGE: &str = "Hann-weighted mean removed, Hann window: main lobe 4 bins wide, side lobes from -31 dB \
                            falling 18 dB an octave, a sine between two bins up to 15 % low in its \
                            bin and up to 4 % high as an interpolated peak";
 

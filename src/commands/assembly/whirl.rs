@@ -21,6 +21,8 @@ const SPEEDS: usize = 51;
 const FAR: f64 = 3.0;
 /// Number of modes that are followed.
 const LINES: usize = 8;
+/// Relative difference up to which two frequencies are equal.
+const EQUAL: f64 = 1e-6;
 /// Smallest radial part of a mode's inertia for which it is reported. Unbalance does not excite axial modes.
 const ACROSS: f64 = 0.01;
 
@@ -197,7 +199,7 @@ impl Spinning {
         section
     }
 
-    pub fn write(&self, folder: &Path, title: &str) -> Fallible<Vec<PathBuf>> {
+    pub fn write<'s>(&'s self, folder: &Path, title: &str) -> Fallible<Vec<PathBuf>> {
         if self.at_rest() {
             return Ok(Vec::new());
         }
@@ -215,13 +217,22 @@ impl Spinning {
         }));
         let value = |(row, column): (usize, usize)| {
             let Some(column) = column.checked_sub(1) else { return self.campbell.speeds[row] };
-            let line = &self.campbell.lines[column / 3];
-            // At lower speeds the mode is overdamped.
-            let above = row.checked_sub(self.campbell.speeds.len() - line.len());
-            let Some(whirl) = above.map(|row| &line[row]) else {
+            // At lower speeds a mode may be overdamped.
+            let above = |line: &'s [Whirl]| -> Option<&'s Whirl> {
+                Some(&line[row.checked_sub(self.campbell.speeds.len() - line.len())?])
+            };
+            let lines = &self.campbell.lines;
+            let Some(whirl) = above(&lines[column / 3]) else {
                 return [0.0, 0.0, 1.0][column % 3];
             };
-            [whirl.frequency() / TAU, whirl.direction, whirl.damping_ratio()][column % 3]
+            let equals = |other: &&Whirl| {
+                (other.frequency() - whirl.frequency()).abs() <= EQUAL * whirl.frequency()
+            };
+            // At rest two modes of one frequency have no sense of rotation.
+            let is_of_pair = self.campbell.speeds[row] == 0.0
+                && lines.iter().filter_map(|line| above(line)).filter(equals).count() > 1;
+            let direction = if is_of_pair { 0.0 } else { whirl.direction };
+            [whirl.frequency() / TAU, direction, whirl.damping_ratio()][column % 3]
         };
         let data = Array2::from_shape_fn((self.campbell.speeds.len(), columns.len()), value);
         let table = folder.join("campbell.csv");

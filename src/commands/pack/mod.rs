@@ -10,6 +10,7 @@ use super::earlier::{Writes, claimed};
 use super::sweep::housings::{mesh_files, solid_mesh_files};
 use super::{CommandResult, Outcome, print};
 use bearing_dynamics::output::pack::{About, PackInput, refuse_foreign_files, write_pack};
+use bearing_dynamics::output::results::pretty;
 use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use solved::{Kind, Solved};
 use std::collections::BTreeMap;
@@ -69,12 +70,19 @@ fn write_one(
 ) -> Fallible<usize> {
     let document = Document::read_file(path)?;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("toml");
-    let scene_name = format!("scene.{extension}");
+    let bases = document.bases();
+    let folder_of_scene = path.parent().unwrap_or(Path::new(""));
+    let is_inside = |(base, _): &(String, &str)| folder_of_scene.join(base).exists();
+    // With changed keys, or with a base outside, the text of the scene is not the scene.
+    let is_as_written = changes.is_empty() && bases.iter().all(is_inside);
+    let scene_name = format!("scene.{}", if is_as_written { extension } else { "json" });
     let mut files = match resolve_subject(&document)? {
         Subject::Assembly(scene) => mesh_files(&scene)?,
         Subject::Solid(scene) => solid_mesh_files(std::iter::once(&*scene))?,
     };
-    files.extend(document.bases().into_iter().map(|(name, text)| (name, text.as_bytes().to_vec())));
+    if is_as_written {
+        files.extend(bases.into_iter().map(|(name, text)| (name, text.as_bytes().to_vec())));
+    }
     let own: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     refuse_foreign_files(folder, &scene_name, &[&own[..], &solved::TABLES].concat())?;
     let solved = Solved::of(kind, path, changes)?;
@@ -84,9 +92,13 @@ fn write_one(
         let (summary, tolerances) = set::only_expected(&solved.summary, expected)?;
         (summary, tolerances, Vec::new())
     };
+    let scene_text = match is_as_written {
+        true => document.text().to_string(),
+        false => pretty(&solved.summary["scene"]),
+    };
     let input = PackInput {
         scene_name: &scene_name,
-        scene_text: document.text(),
+        scene_text: &scene_text,
         files: &files,
         summary: &summary,
         tables: &tables,

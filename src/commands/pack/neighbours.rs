@@ -6,6 +6,8 @@ use std::f64::consts::TAU;
 /// Relative change of densities and moduli that is far above rounding and far below every tolerance: of equal values
 /// it makes another one the largest.
 const NOISE: f64 = 1e-11;
+/// Relative change of all numbers that is rounding: it decides whether what just touches does.
+const ROUNDING: f64 = 1e-15;
 /// Shift of the balls that shows how neighbouring runs part, rad.
 const NEIGHBOUR: f64 = 1e-9;
 /// Shift of the balls from one start to the next, rad.
@@ -17,13 +19,36 @@ const PARTS: usize = 5;
 /// Largest shift of a start, rad.
 pub const FARTHEST_START: f64 = STARTS as f64 * NEXT_START;
 
-/// Scenes whose results differ by rounding alone, or by the length of the elements of beams.
+/// Scenes whose results differ by rounding alone, by the length of the elements of beams, or by the modes of shafts.
 pub fn alike(scene: &Value) -> Vec<Value> {
     let noises = [NOISE, -NOISE].map(|noise| {
         scaled(scene, &[("density", 1.0 + noise), ("youngs_modulus", 1.0 - noise)], &[])
     });
-    let beams = shorter_beams(scene);
-    noises.into_iter().flatten().chain(shifted(scene, TAU)).chain(beams).collect()
+    let modes = scaled(scene, &[("modes_to", 2.0)], &["body"]);
+    let others = noises.into_iter().chain([shifted(scene, TAU), shorter_beams(scene), modes]);
+    others.flatten().chain([rounded(scene, 0), rounded(scene, 1)]).collect()
+}
+
+/// The scene with all its numbers rounded, up and down in turns from the one that `first` says.
+fn rounded(scene: &Value, first: usize) -> Value {
+    fn round(value: &mut Value, count: &mut usize) {
+        match value {
+            Value::Number(number) if number.is_f64() => {
+                let sign = if count.is_multiple_of(2) { 1.0 } else { -1.0 };
+                *count += 1;
+                *value = json!(number.as_f64().unwrap_or(0.0) * (1.0 + sign * ROUNDING));
+            }
+            Value::Array(list) => list.iter_mut().for_each(|of| round(of, count)),
+            Value::Object(map) => map.values_mut().for_each(|of| round(of, count)),
+            _ => {}
+        }
+    }
+    let (mut other, mut count) = (scene.clone(), first);
+    // Times of rows are compared, and sweeps have texts.
+    let parts = other.as_object_mut().into_iter().flatten();
+    let parts = parts.filter(|(name, _)| !["numerics", "output", "sweep"].contains(&name.as_str()));
+    parts.for_each(|(_, part)| round(part, &mut count));
+    other
 }
 
 /// The scene with half the steps, or a tenth of the accuracy, and with a third of it; none without steps.
@@ -86,6 +111,10 @@ fn shifted(scene: &Value, by: f64) -> Option<Value> {
         has_balls
     };
     other.get_mut("bearing").is_some_and(|of| in_tables(of, &shift)).then_some(other)
+}
+
+pub fn has_beams(scene: &Value) -> bool {
+    shorter_beams(scene).is_some()
 }
 
 /// The scene with each segment of a beam as [`PARTS`]; `None` without beams.

@@ -1,6 +1,7 @@
 //! Results of a command of this program on a scene, in memory.
 
 use super::Fallible;
+use super::neighbours::has_beams;
 use bearing_dynamics::output::json;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -58,7 +59,11 @@ impl Solved {
             }
             _ => {
                 bearing(&solve, changes)?;
-                json::read(&out.join("summary.json"))?
+                let mut summary = json::read(&out.join("summary.json"))?;
+                if kind == Kind::Modes && has_beams(&summary["scene"]) {
+                    keep_low_modes(&mut summary);
+                }
+                summary
             }
         };
         Ok(Solved { summary, folder })
@@ -99,6 +104,18 @@ impl Solved {
         }
         Ok(tables)
     }
+}
+
+/// Share of the highest frequency of a shaft up to which its modes are packed: those above have errors of the component
+/// modes and elements of which the shaft consists.
+const LOW: f64 = 0.25;
+
+/// Removes the high ones of the modes of a shaft.
+fn keep_low_modes(summary: &mut Value) {
+    let frequency = |mode: &Value| mode["frequency"]["value"].as_f64().unwrap_or(0.0);
+    let Some(modes) = summary["modes"].as_array_mut() else { return };
+    let highest = modes.iter().map(frequency).fold(0.0, f64::max);
+    modes.retain(|mode| frequency(mode) <= LOW * highest);
 }
 
 /// Output of this program.

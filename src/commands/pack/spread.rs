@@ -9,14 +9,17 @@ use bearing_dynamics::output::results::pretty;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Least tolerance of forces over the largest force, and of moments over that times the largest length: ten times the
-/// residual at which the search ends.
+/// Least tolerance of forces over the largest force, of moments over that times the largest length, and so for
+/// stiffnesses: ten times the residual at which the search ends.
 const OF_SEARCH: f64 = 1e-10;
 /// A relative tolerance is written where it is at most this many times the share of the scale that would do: then it
 /// is tighter for the small values of a list, and not much wider for the large ones.
 const RELATIVE_UP_TO: f64 = 3.0;
 /// A channel is left out if its tolerance would be more than this share of its scale: half a value says nothing.
 const WIDEST: f64 = 0.5;
+/// Relative tolerance of largest values over accepted steps: between the steps of another integrator a peak was up to
+/// 4e-4 higher.
+const BETWEEN_STEPS: f64 = 1e-3;
 /// A channel this small next to the largest value of its unit is zero but for rounding; it is compared with a floor.
 const NEARLY_ZERO: f64 = 1e-3;
 
@@ -47,6 +50,11 @@ impl Spread {
         lay(kind, solved, reference.path())?;
         let mut magnitudes = Magnitudes::default();
         for channel in compare(reference.path(), reference.path(), &Options::default())?.channels {
+            // A load rating and the radii of Hertz contacts are no loads and no levers.
+            let section = channel.channel.split('.').next().unwrap_or_default();
+            if ["rating_life", "hertz", "geometry"].contains(&section) {
+                continue;
+            }
             let largest = magnitudes.0.entry(channel.unit).or_default();
             *largest = channel.spread.scale.max(*largest);
         }
@@ -57,8 +65,12 @@ impl Spread {
     pub fn add(&mut self, other: &Solved) -> Fallible<()> {
         let folder = tempfile::tempdir()?;
         lay(self.kind, other, folder.path())?;
-        let tolerances =
-            Tolerances { class: Some(self.class), rows: self.rows, ..Tolerances::default() };
+        let tolerances = Tolerances {
+            class: Some(self.class),
+            rows: self.rows,
+            partial: true,
+            ..Tolerances::default()
+        };
         let options = Options { tolerances: Some(tolerances), ..Options::default() };
         for channel in compare(self.reference.path(), folder.path(), &options)?.channels {
             let found = self.largest.entry(channel.channel).or_default();
@@ -72,6 +84,7 @@ impl Spread {
     /// Channels that another program cannot be expected to meet: measures of the solution process; which of several
     /// nearly equal values was the largest, which rounding decides; the last moment of a chaotic run.
     pub fn left_out(&self) -> Fallible<Channels> {
+        let is_chaotic = self.rows.is_some();
         let why = |channel: &str| {
             let place = ["ball", "time", "contact_angle"];
             let last = channel.rsplit('.').next().unwrap_or_default();
@@ -81,7 +94,15 @@ impl Spread {
                 Some("warnings are those of this program")
             } else if channel.starts_with("extremes.") && place.contains(&last) {
                 Some("rounding decides which of several nearly equal values is the largest")
-            } else if channel.starts_with("final.") && self.rows.is_some() {
+            } else if last == "moves_most" {
+                Some("of several places with the same amplitude rounding decides")
+            } else if channel.contains(".lines.")
+                && ["bin_frequency", "bins_from_nearest"].contains(&last)
+            {
+                Some("rounding decides which of neighbouring bins is the highest")
+            } else if is_chaotic && channel.contains(".peaks[].") && last.ends_with("frequency") {
+                Some("rounding decides which of several peaks is the higher")
+            } else if is_chaotic && channel.starts_with("final.") {
                 Some("neighbouring runs part before")
             } else {
                 None
@@ -93,10 +114,37 @@ impl Spread {
 
     /// Tolerances of the channels that differ by more than the class allows, divided by `factor`.
     pub fn tolerances(&self, factor: f64, reason: &str) -> Channels {
-        let of = |(channel, found): (&String, &Found)| {
-            Some((channel.clone(), self.tolerance(found, factor, reason)?))
+        // The balls of a chaotic run are alike: what one does another may do in the next run.
+        let mut of_alike: BTreeMap<String, Found> = BTreeMap::new();
+        if self.rows.is_some() {
+            for (channel, found) in &self.largest {
+                let all = of_alike.entry(of_any_ball(channel)).or_default();
+                (all.ratio, all.spread) = (all.ratio.max(found.ratio), all.spread.or(found.spread));
+            }
+        }
+        let of = |(channel, own): (&String, &Found)| {
+            let mut found = own.clone();
+            if let Some(all) = of_alike.get(&of_any_ball(channel)) {
+                found.ratio = all.ratio;
+                found.spread = compare::Spread { scale: own.spread.scale, ..all.spread };
+            }
+            Some((channel.clone(), self.tolerance(&found, factor, reason)?))
         };
         self.largest.iter().filter_map(of).collect()
+    }
+
+    /// Widens the tolerances of the largest values of runs, which are those of accepted steps.
+    pub fn widen_extremes(&self, channels: &mut Channels) -> Fallible<()> {
+        for (name, unit) in self.channels()? {
+            if name.starts_with("extremes.") && self.class.tolerance(&unit).is_some() {
+                let own = channels.entry(name).or_default();
+                if own.class != Some(ToleranceClass::Ignored) {
+                    own.relative = Some(own.relative.unwrap_or(0.0).max(BETWEEN_STEPS));
+                    own.reason = Some("a peak may be between two steps".into());
+                }
+            }
+        }
+        Ok(())
     }
 
     fn tolerance(&self, found: &Found, factor: f64, reason: &str) -> Option<ChannelTolerance> {
@@ -128,10 +176,10 @@ impl Spread {
         Some(own)
     }
 
-    /// Raises the floors of forces and moments to what a search leaves.
+    /// Raises the floors of forces, moments and stiffnesses to what a search leaves.
     pub fn add_floors(&self, channels: &mut Channels) -> Fallible<()> {
         for (name, unit) in self.channels()? {
-            if !["N", "N m"].contains(&unit.as_str()) {
+            if !["N", "N m", "N/m", "N/rad", "N m/m", "N m/rad"].contains(&unit.as_str()) {
                 continue;
             }
             let floor = OF_SEARCH * self.magnitudes.of(&unit);
@@ -153,6 +201,16 @@ impl Spread {
         let of = self.reference.path();
         let all = compare(of, of, &Options::default())?.channels.into_iter();
         Ok(all.map(|channel| (channel.channel, channel.unit)).collect())
+    }
+}
+
+/// The name of a channel with `#` for the number of a ball.
+fn of_any_ball(channel: &str) -> String {
+    let Some((before, after)) = channel.split_once("ball_") else { return channel.into() };
+    let rest = after.trim_start_matches(|digit: char| digit.is_ascii_digit());
+    match rest.len() < after.len() {
+        true => format!("{before}ball_#{rest}"),
+        false => channel.into(),
     }
 }
 

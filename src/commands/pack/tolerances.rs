@@ -1,7 +1,7 @@
 //! Tolerances of a pack, measured: from how much the results differ from those of scenes next to it.
 
 use super::Fallible;
-use super::neighbours::{FARTHEST_START, STARTS, alike, finer, neighbour, starts};
+use super::neighbours::{FARTHEST_START, STARTS, alike, finer, has_beams, neighbour, starts};
 use super::solved::{Kind, Solved};
 use super::spread::Spread;
 use bearing_dynamics::output::Series;
@@ -30,8 +30,11 @@ const FEWEST_ROWS: usize = 2;
 /// as much, or a few times more.
 const OF_ERRORS: f64 = 10.0;
 /// Tolerance over the largest difference to the other starts: a further start is outside the largest of 16 now and
-/// then, outside three times of it never in a million (normal distribution: 5.3 standard deviations).
-const OF_STARTS: f64 = 3.0;
+/// then; five times of it are about nine standard deviations, because a run has a thousand channels and few are normally
+/// distributed.
+const OF_STARTS: f64 = 5.0;
+/// Share of the rows in which all starts were alike that is compared: a further start may part a little earlier.
+const ROWS_COMPARED: f64 = 0.75;
 
 /// Channels that a program may leave out, by what it then does not claim.
 const TAGS: [(&str, &[&str]); 9] = [
@@ -61,12 +64,15 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     let mut spread = Spread::new(kind, class, solved)?;
     let mut others = alike(scene).into_iter().map(again).collect::<Fallible<Vec<Solved>>>()?;
     let (mut factor, mut reason) =
-        (OF_ERRORS, "times the difference to other rounding or shorter elements".to_string());
+        (OF_ERRORS, "times the difference to other rounding".to_string());
+    if has_beams(scene) {
+        reason += ", shorter elements or more modes of shafts";
+    }
     if of_runs {
         for finer in finer(scene) {
             others.push(again(finer)?);
         }
-        reason = "times the difference to other rounding or finer steps".into();
+        reason += " or finer steps";
     }
     if kind == Kind::Run {
         let neighbour = neighbour(scene).map(again).transpose()?;
@@ -82,8 +88,9 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
             for other in &others {
                 rows = rows.min(rows_alike(solved, other)?.unwrap_or(usize::MAX));
             }
-            all.rows = (rows < usize::MAX).then_some(rows.max(FEWEST_ROWS));
-            spread.rows = all.rows;
+            spread.rows = (rows < usize::MAX).then_some(rows.max(FEWEST_ROWS));
+            let compared = |rows: usize| ((ROWS_COMPARED * rows as f64) as usize).max(FEWEST_ROWS);
+            all.rows = spread.rows.map(compared);
             factor = OF_STARTS;
             reason =
                 format!("times the largest difference to {STARTS} other starts and to finer steps");
@@ -91,10 +98,13 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     }
     others.iter().try_for_each(|other| spread.add(other))?;
     all.channels = spread.tolerances(factor, &format!("{factor} {reason}"));
-    if !of_runs {
-        spread.add_floors(&mut all.channels)?;
+    match of_runs {
+        true => spread.widen_extremes(&mut all.channels)?,
+        false => spread.add_floors(&mut all.channels)?,
     }
     all.channels.extend(spread.left_out()?);
+    // Only the low modes of a shaft are packed.
+    all.partial = kind == Kind::Modes && has_beams(scene);
     Ok(all)
 }
 

@@ -15,7 +15,7 @@ use std::path::Path;
 /// Common part of the names of a vector's components: `loads.` for `loads.x` and `loads.y`. A mean
 /// or an extreme over time belongs to its channel.
 fn vector_stem(channel: &str) -> &str {
-    const OVER_TIME: [&str; 4] = [".mean", ".smallest", ".largest", ".peak_to_peak"];
+    const OVER_TIME: [&str; 5] = [".mean", ".rms", ".smallest", ".largest", ".peak_to_peak"];
     let channel = OVER_TIME.iter().find_map(|end| channel.strip_suffix(end)).unwrap_or(channel);
     for component in ["tilt_y", "tilt_z", "x", "y", "z"] {
         if let Some(stem) = channel.strip_suffix(component)
