@@ -184,6 +184,36 @@ fn programs_that_leave_out_or_take_too_long_are_named() {
     assert_eq!(without(&["/inner_race"]).0, 1);
 }
 
+/// An interrupted comparison leaves no program behind, and names no pack as judged.
+#[test]
+fn an_interruption_ends_the_program_that_runs() {
+    let (root, set) = set();
+    let (set, out) = (text(&set), text(&root.path().join("out")));
+    let pid = root.path().join("pid");
+    let with = format!("echo $$ > '{}'; exec sleep 100", text(&pid));
+    let mut conform = command()
+        .args(["conform", &set, "--with", &with, "--out", &out, "--tags", "statics"])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let written = || fs::read_to_string(&pid).is_ok_and(|text| text.ends_with('\n'));
+    while !written() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let is_alive = |pid: &str| {
+        let found = std::process::Command::new("kill").args(["-0", pid]).output().unwrap();
+        found.status.success()
+    };
+    let program = read(&pid).trim().to_string();
+    assert!(is_alive(&program));
+    let id = conform.id().to_string();
+    std::process::Command::new("kill").args(["-INT", &id]).status().unwrap();
+    assert_eq!(conform.wait().unwrap().code(), Some(2));
+    assert!(!is_alive(&program));
+    assert!(!Path::new(&out).join("results.json").exists());
+}
+
 /// A number that is wrong by ten times its tolerance is found and its channel named: signs, axes, units, stiffness,
 /// stale and shifted rows.
 #[test]
