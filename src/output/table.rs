@@ -183,7 +183,7 @@ impl RunTable {
         Some(acquire(&rows, self.window.clone(), self.interval, &sensor.acquisition))
     }
 
-    /// Mean speeds of the inner and the outer race of a bearing over the window, rad/s; zero below [`LEAST_SPEED`].
+    /// Mean speeds of the inner and the outer race of a bearing over the window, rad/s; zero below 1e-9 rad/s.
     pub fn race_speeds(&self, prefix: &str) -> Option<[f64; 2]> {
         let speed = |side: &str| {
             let mean = mean(&self.windowed(&format!("{prefix}{side}_speed"))?);
