@@ -160,7 +160,9 @@ impl Spread {
         let nearly_zero = NEARLY_ZERO * self.magnitudes.of(&found.unit);
         let mut own = ChannelTolerance { reason: Some(reason.into()), ..Default::default() };
         if scale <= nearly_zero && needed <= nearly_zero {
-            own.absolute_floor = Some(needed.max(class.absolute_floor));
+            // In a chaotic run it grows from rounding, over orders of magnitude.
+            let least = if self.rows.is_some() { nearly_zero } else { class.absolute_floor };
+            own.absolute_floor = Some(needed.max(least));
         } else if needed > WIDEST * scale {
             let percent = 100.0 * largest / scale;
             return Some(ignored(format!(
