@@ -34,7 +34,7 @@ const OF_ERRORS: f64 = 10.0;
 /// distributed.
 const OF_STARTS: f64 = 5.0;
 /// Share of the rows in which all starts were alike that is compared: a further start may part a little earlier.
-const ROWS_COMPARED: f64 = 0.75;
+const ROWS_COMPARED: f64 = 0.5;
 
 /// Channels that a program may leave out, by what it then does not claim.
 const TAGS: [(&str, &[&str]); 9] = [
