@@ -2,8 +2,8 @@
 
     python check_packs.py SET BEARING
 
-A change of `resolved.json` that belongs to a tag must fail the pack: a program without the feature, or with an error of
-that size in it, then fails as well. A change of the size of rounding, and a finer accuracy, must pass.
+A change of `resolved.json` that belongs to a tag must fail the pack. A change of the size of rounding, and a finer
+accuracy, must pass.
 """
 
 import json

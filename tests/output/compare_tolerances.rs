@@ -300,3 +300,16 @@ fn extremes_over_time_share_the_scale_of_their_vector() {
         assert!((allowed / expected - 1.0).abs() <= 1e-12, "{of}: {allowed:e}");
     }
 }
+
+/// Tolerances are measured from the largest differences: NaN, which a maximum would lose, counts as another kind of value.
+#[test]
+fn a_value_that_is_not_a_number_is_part_of_no_spread() {
+    let root = tempfile::tempdir().unwrap();
+    let [a, b] = ["a.csv", "b.csv"].map(|name| root.path().join(name));
+    fs::write(&a, "load [N]\n1.0\n2.0\n").unwrap();
+    fs::write(&b, "load [N]\nNaN\n2.5\n").unwrap();
+    let found = compare(&a, &b, &Options::default()).unwrap();
+    let spread = found.channels[0].spread;
+    assert_eq!((spread.unlike, spread.largest, spread.relative), (1, 0.5, 0.25));
+    assert!(!found.equal);
+}

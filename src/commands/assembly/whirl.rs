@@ -39,6 +39,11 @@ pub struct Spinning {
     housed: bool,
 }
 
+/// Mode of a Campbell line at a row; `None` at lower speeds, where it is overdamped.
+fn whirl_at(line: &[Whirl], row: usize, rows: usize) -> Option<&Whirl> {
+    Some(&line[row.checked_sub(rows - line.len())?])
+}
+
 fn rpm(speed: f64) -> f64 {
     speed * 60.0 / TAU
 }
@@ -199,7 +204,7 @@ impl Spinning {
         section
     }
 
-    pub fn write<'s>(&'s self, folder: &Path, title: &str) -> Fallible<Vec<PathBuf>> {
+    pub fn write(&self, folder: &Path, title: &str) -> Fallible<Vec<PathBuf>> {
         if self.at_rest() {
             return Ok(Vec::new());
         }
@@ -217,12 +222,8 @@ impl Spinning {
         }));
         let value = |(row, column): (usize, usize)| {
             let Some(column) = column.checked_sub(1) else { return self.campbell.speeds[row] };
-            // At lower speeds a mode may be overdamped.
-            let above = |line: &'s [Whirl]| -> Option<&'s Whirl> {
-                Some(&line[row.checked_sub(self.campbell.speeds.len() - line.len())?])
-            };
-            let lines = &self.campbell.lines;
-            let Some(whirl) = above(&lines[column / 3]) else {
+            let (lines, rows) = (&self.campbell.lines, self.campbell.speeds.len());
+            let Some(whirl) = whirl_at(&lines[column / 3], row, rows) else {
                 return [0.0, 0.0, 1.0][column % 3];
             };
             let equals = |other: &&Whirl| {
@@ -230,7 +231,8 @@ impl Spinning {
             };
             // At rest two modes of one frequency have no sense of rotation.
             let is_of_pair = self.campbell.speeds[row] == 0.0
-                && lines.iter().filter_map(|line| above(line)).filter(equals).count() > 1;
+                && lines.iter().filter_map(|line| whirl_at(line, row, rows)).filter(equals).count()
+                    > 1;
             let direction = if is_of_pair { 0.0 } else { whirl.direction };
             [whirl.frequency() / TAU, direction, whirl.damping_ratio()][column % 3]
         };

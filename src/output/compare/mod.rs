@@ -143,7 +143,7 @@ pub struct ChannelResult {
 /// Size of a channel's differences, from which tolerances are measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Differences that are none of two numbers: texts, counts, missing values, units.
+    /// Differences that are none of two numbers: texts, counts, missing values, units, NaN.
     pub unlike: usize,
     /// Scale of the channel: its largest |reference|, shared by the components of one vector.
     pub scale: f64,
@@ -156,10 +156,15 @@ pub struct Spread {
 
 impl Spread {
     fn add(&mut self, reference: f64, difference: f64) {
+        // `max` would lose a NaN.
+        if !difference.is_finite() {
+            self.unlike += 1;
+            return;
+        }
         self.largest = self.largest.max(difference);
-        if reference.abs() < SMALL * self.scale {
+        if reference.abs() <= SMALL * self.scale {
             self.of_small = self.of_small.max(difference);
-        } else if difference > 0.0 {
+        } else {
             self.relative = self.relative.max(difference / reference.abs());
         }
     }
