@@ -3,7 +3,7 @@
 use crate::{housed_command_common, resume_common};
 
 use housed_command_common::*;
-use resume_common::{assert_same_results, interrupted, stopped};
+use resume_common::{NEVER, assert_same_results, end_after, interrupted, stopped};
 
 /// A blow; the rows lie on a grid that windows divide.
 fn blow(end: &str, further: &str) -> String {
@@ -20,29 +20,29 @@ fn blow(end: &str, further: &str) -> String {
 #[test]
 fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
     let place = Place::new();
-    let scene = place.scene("scene.toml", &blow("2 ms", ""));
+    let scene = place.scene("scene.toml", &blow(NEVER, ""));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     let part = into_folder("run", &scene, &parts, &["--save-every", "1"]);
-    let stood = interrupted(part, 150, &parts)["time"].as_f64().unwrap();
-    assert!(stood > 0.0 && stood < 2e-3, "{stood}");
+    assert!(interrupted(part, 150, &parts)["time"].as_f64().unwrap() > 0.0);
     // It is not written over.
     let output = into_folder("run", &scene, &parts, &[]).output().unwrap();
     assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
     // Killed on the way, it goes on from what was kept last.
     let part = into_folder("run", &scene, &parts, &["--resume", "--save-every", "1"]);
     assert_eq!(stopped(part, 100, "-KILL").0, None);
+    let scene = place.scene("scene.toml", &blow(&end_after(&parts, 1.6), ""));
     let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
     assert!(said.contains("resumed at"), "{said}");
     succeed(into_folder("run", &scene, &whole, &[]));
     assert_same_results(&whole, &parts);
     // To a later end.
     let (longer, extended) = (place.path("longer"), whole);
-    let scene = place.scene("scene.toml", &blow("2.4 ms", ""));
+    let scene = place.scene("scene.toml", &blow(&end_after(&parts, 0.4), ""));
     succeed(into_folder("run", &scene, &longer, &[]));
     succeed(into_folder("run", &scene, &extended, &["--resume"]));
     assert_same_results(&longer, &extended);
     // Of another scene it is refused.
-    let other = place.scene("other.toml", &blow("3 ms", "coupling_phase = 0.2"));
+    let other = place.scene("other.toml", &blow(NEVER, "coupling_phase = 0.2"));
     let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
     assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));
 }
@@ -58,23 +58,24 @@ fn interrupted_and_extended_courses_end_with_the_same_bytes() {
             "z = { load = { half_sine = \"-500 N\", start = \"0.2 ms\", duration = \"130 ms\" } }";
         scene_text("fit.radial = \"-2 um\"", &run).replace("z = { load = \"-250 N\" }", pulse)
     };
-    let scene = place.scene("scene.toml", &numerics("60 ms"));
+    let scene = place.scene("scene.toml", &numerics(NEVER));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     interrupted(into_folder("run", &scene, &parts, &["--save-every", "1"]), 60, &parts);
     let output = into_folder("run", &scene, &parts, &[]).output().unwrap();
     assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
+    let scene = place.scene("scene.toml", &numerics(&end_after(&parts, 50.0)));
     let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
     assert!(said.contains("resumed at"), "{said}");
     succeed(into_folder("run", &scene, &whole, &[]));
     assert_same_results(&whole, &parts);
     // To a later end.
     let longer = place.path("longer");
-    let scene = place.scene("scene.toml", &numerics("62 ms"));
+    let scene = place.scene("scene.toml", &numerics(&end_after(&parts, 2.0)));
     succeed(into_folder("run", &scene, &longer, &[]));
     succeed(into_folder("run", &scene, &whole, &["--resume"]));
     assert_same_results(&longer, &whole);
     // Of another scene it is refused.
-    let other = numerics("63 ms").replace("-500 N", "-400 N");
+    let other = numerics(NEVER).replace("-500 N", "-400 N");
     let other = place.scene("other.toml", &other);
     let output = into_folder("run", &other, &longer, &["--resume"]).output().unwrap();
     assert!(stderr(&output).contains("another scene"), "{}", stderr(&output));

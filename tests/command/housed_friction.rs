@@ -3,7 +3,7 @@
 use crate::{housed_command_common, resume_common};
 
 use housed_command_common::*;
-use resume_common::{assert_same_results, interrupted};
+use resume_common::{NEVER, assert_same_results, end_after, interrupted};
 use std::fs;
 
 /// A race free in a rough bore under loads down, along and about its axis.
@@ -56,12 +56,13 @@ fn a_rough_bore_holds_its_race_and_tells_of_it() {
 #[test]
 fn an_interrupted_run_with_friction_ends_with_the_same_bytes() {
     let place = Place::new();
-    let scene = place.scene("scene.toml", &rough(GIVEN, "2 ms"));
+    let scene = place.scene("scene.toml", &rough(GIVEN, NEVER));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     let part = into_folder("run", &scene, &parts, &["--save-every", "1"]);
     let state = interrupted(part, 150, &parts);
     let friction = &state["sound"]["checkpoint"]["Housed"][0]["solids"][0]["seats"][0]["friction"];
     assert!(!friction["springs"].as_array().unwrap().is_empty());
+    let scene = place.scene("scene.toml", &rough(GIVEN, &end_after(&parts, 1.6)));
     let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
     assert!(said.contains("resumed at"), "{said}");
     succeed(into_folder("run", &scene, &whole, &[]));
@@ -71,7 +72,7 @@ fn an_interrupted_run_with_friction_ends_with_the_same_bytes() {
     let seat = &mut state["sound"]["checkpoint"]["Housed"][0]["solids"][0]["seats"][0];
     assert!(seat.as_object_mut().unwrap().remove("friction").is_some());
     fs::write(whole.join("state.json"), state.to_string()).unwrap();
-    let longer = place.scene("longer.toml", &rough(GIVEN, "2.4 ms"));
+    let longer = place.scene("longer.toml", &rough(GIVEN, NEVER));
     let output = into_folder("run", &longer, &whole, &["--resume"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("damaged"), "{}", stderr(&output));

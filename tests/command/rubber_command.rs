@@ -1,7 +1,7 @@
 //! Scenes with a solid of rubber: statics, vibrations, runs that are interrupted and extended, and refusals.
 
 use crate::housed_command_common::scene_text;
-use crate::resume_common::{assert_same_results, interrupted};
+use crate::resume_common::{assert_same_results, end_after, interrupted};
 use crate::solid_command_common::{
     Place, column, command, into_folder, json, shipped, stderr, succeed,
 };
@@ -201,27 +201,28 @@ fn interrupted_killed_and_extended_runs_of_rubber_end_with_the_same_bytes() {
     let place = Place::new();
     // Rows at which steps end on the way, before, at and behind the corner.
     let of = |end: &str| numerics(end).replace("\"10 ms\"", "\"7 ms\"");
-    let scene = place.scene("scene.toml", &of("7 s"));
+    let scene = place.scene("scene.toml", &of("100 s"));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     interrupted(into_folder("run", &scene, &parts, &["--save-every", "1"]), 200, &parts);
+    let scene = place.scene("scene.toml", &of(&end_after(&parts, 4000.0)));
     let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
     assert!(said.contains("resumed at t = "), "{said}");
     succeed(into_folder("run", &scene, &whole, &[]));
     assert_same_results(&whole, &parts);
     // A complete run goes on to a later end.
-    let longer = place.scene("scene.toml", &of("7.1 s"));
+    let longer = place.scene("scene.toml", &of(&end_after(&parts, 100.0)));
     succeed(into_folder("run", &longer, &parts, &["--resume"]));
     succeed(into_folder("run", &longer, &whole, &["--fresh"]));
     assert_same_results(&whole, &parts);
     // Another rubber does not go on from there, nor does a damaged state.
-    let text = of("7.2 s").replace("table = \"3.1\"", "table = \"2.3\"");
+    let text = of("100 s").replace("table = \"3.1\"", "table = \"2.3\"");
     let refused =
         into_folder("run", &place.scene("o.toml", &text), &parts, &["--resume"]).output().unwrap();
     assert!(stderr(&refused).contains("another scene"), "{}", stderr(&refused));
     let mut state = json(parts.join("state.json"));
     state["sound"]["checkpoint"]["Rubber"][0]["state"]["history"].as_array_mut().unwrap().pop();
     fs::write(parts.join("state.json"), state.to_string()).unwrap();
-    let longer = place.scene("scene.toml", &of("7.2 s"));
+    let longer = place.scene("scene.toml", &of("100 s"));
     let refused = into_folder("run", &longer, &parts, &["--resume"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).contains("damaged"), "{}", stderr(&refused));

@@ -1,6 +1,8 @@
 //! `bearing run` as a user meets it: results folder, signals, errors, comparison.
 
-use crate::resume_common::{assert_same_results, interrupted, signal, start, stopped, wait};
+use crate::resume_common::{
+    NEVER, assert_same_results, end_after, interrupted, signal, start, stopped, wait,
+};
 use crate::solid_command_common::{Place, json, stderr};
 
 use serde_json::Value;
@@ -154,16 +156,18 @@ fn a_run_leaves_a_results_folder() {
 #[test]
 fn interrupted_by_a_signal_and_resumed() {
     let place = Place::new();
-    // A second or so, whatever the machine: the signal comes in the middle.
-    let numerics = "end = \"300.001 ms\"\nstep = \"2 us\"\noutput_interval = \"0.4 ms\"";
-    let scene = place.scene("scene.toml", &scene(numerics, ALL_PLOTS));
+    let of = |end: &str| {
+        let numerics = "step = \"2 us\"\noutput_interval = \"0.4 ms\"";
+        place.scene("scene.toml", &scene(&format!("end = \"{end}\"\n{numerics}"), ALL_PLOTS))
+    };
+    let scene = of(NEVER);
     let whole = place.path("whole");
     let parts = place.path("parts");
     interrupted(command(&scene, &parts, &[]), 60, &parts);
     let summary = json(parts.join("summary.json"));
     let rows = fs::read_to_string(parts.join("series.csv")).unwrap().lines().count() - 1;
     assert_eq!(summary["output"]["rows"], rows);
-    assert!(rows > 1 && rows < 2000, "{rows}");
+    assert!(rows > 1, "{rows}");
 
     // Without a word about it nothing is overwritten.
     let refused = run(&scene, &parts, &[]);
@@ -179,6 +183,7 @@ fn interrupted_by_a_signal_and_resumed() {
         message.contains(" --set \"numerics.step=2 us\" --set \"bearing.balls=8\" --resume"),
         "{message}"
     );
+    let scene = of(&end_after(&parts, 100.001));
     let output = run(&scene, &parts, &["--resume"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("resumed at t = "));
@@ -213,9 +218,13 @@ fn a_run_that_cannot_go_on_says_what_has_changed() {
 #[test]
 fn a_resumed_run_keeps_the_method_of_the_plan_and_its_reason() {
     let place = Place::new();
-    let scene = place.scene("scene.toml", &scene("end = \"1 s\"", "plots = []"));
+    let of = |end: &str| {
+        let numerics = format!("end = \"{end}\"\noutput_interval = \"1 ms\"");
+        place.scene("scene.toml", &scene(&numerics, "plots = []"))
+    };
     let (whole, parts) = (place.path("whole"), place.path("parts"));
-    interrupted(command(&scene, &parts, &[]), 60, &parts);
+    interrupted(command(&of(NEVER), &parts, &[]), 60, &parts);
+    let scene = of(&end_after(&parts, 100.0));
     let output = run(&scene, &parts, &["--resume"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(

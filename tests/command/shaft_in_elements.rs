@@ -1,7 +1,7 @@
 //! Runs of a shaft in elements as a user meets them.
 
 use crate::housed_command_common::{self, Place, into_folder, stderr, succeed};
-use crate::resume_common::{assert_same_results, interrupted};
+use crate::resume_common::{NEVER, assert_same_results, end_after, interrupted};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -22,21 +22,25 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
     let place = Place::new();
     let with_fields =
         |end: &str| scene(end).replace("[output]", "fields_interval = \"1 ms\"\n\n[output]");
-    let path = place.scene("scene.toml", &with_fields("3 ms"));
+    let path = place.scene("scene.toml", &with_fields(NEVER));
     let (whole, parts) = (place.path("whole"), place.path("parts"));
     let state = interrupted(into_folder("run", &path, &parts, &["--save-every", "1"]), 150, &parts);
     let attached = |state: &Value| {
         state["sound"]["checkpoint"]["Housed"][0]["solids"][0]["attached"].as_array().unwrap().len()
     };
     assert_eq!(attached(&state), 5);
+    let path = place.scene("scene.toml", &with_fields(&end_after(&parts, 2.0)));
     let said = succeed(into_folder("run", &path, &parts, &["--resume"]));
     assert!(said.contains("resumed at"), "{said}");
     let said = succeed(into_folder("run", &path, &whole, &[]));
     assert!(said.contains("steps of the shaft"), "{said}");
     assert_same_results(&whole, &parts);
-    // At the start and every millisecond.
-    assert_eq!(fs::read_dir(whole.join("fields")).unwrap().count(), 4);
-    assert!(whole.join("fields/shaft_000003.vtu").is_file() && whole.join("fields.pvd").is_file());
+    // At the start, every millisecond and at the end.
+    let ended = housed_command_common::json(whole.join("state.json"))["time"].as_f64().unwrap();
+    let fields = 1 + (1e3 * ended).ceil() as usize;
+    assert_eq!(fs::read_dir(whole.join("fields")).unwrap().count(), fields);
+    let last = format!("fields/shaft_{:06}.vtu", fields - 1);
+    assert!(whole.join(last).is_file() && whole.join("fields.pvd").is_file());
     let columns = fs::read_to_string(whole.join("series.csv")).unwrap();
     let head = columns.lines().next().unwrap();
     for name in [
@@ -49,7 +53,7 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
         assert!(head.split(',').any(|column| column == name), "{name}: {head}");
     }
     // Another penalty is another scene; a state without its shaft is none.
-    let other = with_fields("4 ms")
+    let other = with_fields(NEVER)
         .replace("method = \"explicit\"", "method = \"explicit\", race_stiffness = \"1e9 N/m\"");
     let other = place.scene("other.toml", &other);
     let output = into_folder("run", &other, &whole, &["--resume"]).output().unwrap();
@@ -57,7 +61,7 @@ fn an_interrupted_run_ends_with_the_same_bytes() {
     let mut state = housed_command_common::json(whole.join("state.json"));
     state["sound"]["checkpoint"]["Housed"][0]["solids"][0]["attached"] = json!([]);
     fs::write(whole.join("state.json"), state.to_string()).unwrap();
-    let longer = place.scene("longer.toml", &with_fields("4 ms"));
+    let longer = place.scene("longer.toml", &with_fields(NEVER));
     let output = into_folder("run", &longer, &whole, &["--resume"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("damaged"), "{}", stderr(&output));

@@ -3,7 +3,7 @@
 use crate::{resume_common, solid_command_common};
 
 use bearing_dynamics::numeric::clock::rounded;
-use resume_common::{assert_same_results, interrupted, stopped};
+use resume_common::{NEVER, assert_same_results, end_after, interrupted, stopped};
 use solid_command_common::{Place, SHORT_RUN, column, into_folder, json, stderr, succeed};
 use std::fs;
 
@@ -15,8 +15,7 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
             let fixed = "output_interval = \"10 us\"\nfields_interval = \"0.5 ms\"";
             format!("{SHORT_RUN}method = \"{method}\"\nend = \"{end}\"\n{fixed}\n")
         };
-        // A second or so; the end lies off the grid of rows.
-        let scene = place.scene("scene.toml", &numerics("4.003 ms"));
+        let scene = place.scene("scene.toml", &numerics(NEVER));
         let (whole, parts) = (place.path("whole"), place.path("parts"));
         interrupted(into_folder("run", &scene, &parts, &["--save-every", "1"]), 100, &parts);
         let summary = json(parts.join("summary.json"));
@@ -36,19 +35,21 @@ fn interrupted_killed_and_extended_runs_end_with_the_same_bytes() {
             let name = path.file_name().unwrap().to_string_lossy();
             fs::write(path.with_file_name(format!(".{name}.{dead}.partial")), "half").unwrap();
         }
+        // Off the grid of rows.
+        let scene = place.scene("scene.toml", &numerics(&end_after(&parts, 2.0035)));
         let said = succeed(into_folder("run", &scene, &parts, &["--resume"]));
         assert!(said.contains("resumed at t = "), "{said}");
         succeed(into_folder("run", &scene, &whole, &[]));
         assert_same_results(&whole, &parts);
 
         // A complete run goes on to a later end.
-        let longer = place.scene("scene.toml", &numerics("5 ms"));
+        let longer = place.scene("scene.toml", &numerics(&end_after(&parts, 1.0)));
         succeed(into_folder("run", &longer, &parts, &["--resume"]));
         succeed(into_folder("run", &longer, &whole, &["--fresh"]));
         assert_same_results(&whole, &parts);
 
         // Another scene does not go on from there.
-        let text = numerics("6 ms").replace("20 MPa", "21 MPa");
+        let text = numerics(NEVER).replace("20 MPa", "21 MPa");
         let other = place.scene("other.toml", &text);
         let refused = into_folder("run", &other, &parts, &["--resume"]).output().unwrap();
         assert_eq!(refused.status.code(), Some(2));

@@ -13,7 +13,7 @@ use tempfile::tempdir;
 /// A cage that falls on its land while the shaft starts to turn, from three positions of the balls.
 fn study(folder: &Path) -> String {
     let base = scene("cage_600rpm.toml");
-    let numerics = "integrator = \"rosenbrock\"\naccuracy = 0.01\nend = \"12 ms\"\noutput_interval = \"0.1 ms\"";
+    let numerics = "integrator = \"rosenbrock\"\naccuracy = 1e-5\nend = \"12 ms\"\noutput_interval = \"0.1 ms\"";
     let sweep = "of = \"runs\"\n\"bearing.ball_phase\" = \"0 deg .. 0.02 deg / 3\"";
     let output = "plots = []\nwindow_start = \"8 ms\"";
     let words = format!(
@@ -53,10 +53,13 @@ fn points_have_the_bits_of_single_runs_after_an_interruption() {
     let out = folder.path().join("out");
     let run = interrupt(&path, &out, "-INT");
     let message = refusal(&["sweep"], &run);
-    let kept =
-        format!("interrupted after 1 of 3 points, kept in {}; the same command", out.display());
-    assert!(message.starts_with(&kept), "{message}");
-    let state = json(&point(&out, 1).join("state.json"));
+    // Half a second a point: a busy machine may be late by one.
+    let complete = (1..=2).find(|kept| {
+        let told = format!("interrupted after {kept} of 3 points, kept in {}", out.display());
+        message.starts_with(&told)
+    });
+    let complete = complete.unwrap_or_else(|| panic!("{message}"));
+    let state = json(&point(&out, complete).join("state.json"));
     assert_eq!(state["stopped"], "interrupted");
     assert_eq!(json(&out.join("sweep.json"))["complete"], false);
     let first = fs::metadata(point(&out, 0).join("series.npy")).unwrap().modified().unwrap();

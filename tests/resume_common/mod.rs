@@ -43,6 +43,16 @@ fn without_seconds(path: &Path) -> Value {
     tree
 }
 
+/// An end that no run reaches before its signal comes, however long that takes on a busy machine.
+pub const NEVER: &str = "10 s";
+
+/// An end, to the nanosecond, so many milliseconds after where the run in a folder stopped.
+pub fn end_after(folder: &Path, milliseconds: f64) -> String {
+    let state: Value =
+        serde_json::from_slice(&fs::read(folder.join("state.json")).unwrap()).unwrap();
+    format!("{:.6} ms", 1e3 * state["time"].as_f64().unwrap() + milliseconds)
+}
+
 /// Starts a run and waits until it steps.
 pub fn start(mut command: Command) -> Child {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -50,7 +60,9 @@ pub fn start(mut command: Command) -> Child {
     let mut line = String::new();
     while !line.contains("a row every") {
         line.clear();
-        assert!(lines.read_line(&mut line).unwrap() > 0, "it ended before it stepped");
+        if lines.read_line(&mut line).unwrap() == 0 {
+            panic!("it ended before it stepped: {}", wait(child).1);
+        }
     }
     child
 }
