@@ -45,6 +45,7 @@ CHANGES = {
     "solid-modes": ("solid", ["density"], 1.1),
     "solid-static": ("solid", ["youngs_modulus"], 1.1),
     "spall": ("bearing", ["length"], 1.1),
+    "spall-sides": ("bearing", ["width"], 1.1),
     "spin": ("solid", ["spin"], 1.1),
     "springs": ("spring", ["y", "z"], 1.1),
     "telemeter": ("sensor", ["distance", "offset"], 1.1),

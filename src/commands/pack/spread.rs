@@ -36,6 +36,8 @@ struct Found {
     unit: String,
     ratio: f64,
     spread: compare::Spread,
+    /// Its tolerance is a share of the scale even where the class would do.
+    is_share: bool,
 }
 
 /// Largest differences to other results, channel by channel.
@@ -136,7 +138,7 @@ impl Spread {
                 if STATISTICS.contains(&section) && found.spread.largest > 0.0 {
                     let least = GROWN / factor * found.spread.scale;
                     found.spread.largest = found.spread.largest.max(least);
-                    (found.ratio, found.spread.relative) = (f64::INFINITY, f64::INFINITY);
+                    found.is_share = true;
                 }
             }
             Some((channel.clone(), self.tolerance(&found, factor, reason)?))
@@ -164,7 +166,7 @@ impl Spread {
         if unlike > 0 {
             return Some(ignored("it differs between results that are equally right".into()));
         }
-        if factor * found.ratio <= 1.0 {
+        if factor * found.ratio <= 1.0 && !found.is_share {
             return None;
         }
         let needed = factor * largest;
@@ -179,7 +181,7 @@ impl Spread {
             return Some(ignored(format!(
                 "not determined: {percent:.0} % of its scale between results that are equally right"
             )));
-        } else if relative * scale <= RELATIVE_UP_TO * largest {
+        } else if relative * scale <= RELATIVE_UP_TO * largest && !found.is_share {
             own.relative = Some((factor * relative).max(class.relative));
             let floor = (factor * of_small).max(class.absolute_floor);
             own.absolute_floor = (floor > class.absolute_floor).then_some(floor);
