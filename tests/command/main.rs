@@ -57,6 +57,7 @@ mod rotors_on_springs;
 mod rubber_command;
 mod rubber_limits;
 mod run_command;
+mod run_command_resume;
 mod run_extremes;
 mod run_plan;
 mod run_recorder;
