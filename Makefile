@@ -35,17 +35,19 @@ conformance:
 	"$${CARGO_TARGET_DIR:-target}/release/bearing" pack conformance/set.toml --jobs 2 --out $(CONFORMANCE)
 	tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf - -C target conformance | gzip -n9 > $(CONFORMANCE).tar.gz
 
-## The form of all files of the set, what its packs find, and three programs on its levels 1 and 2. PYTHON needs numpy, scipy, jsonschema.
+## The form of all files of the set, what its packs find, three programs on its levels 1 and 2, and one on level 3. PYTHON needs
+## numpy, scipy, meshio, jsonschema.
 PYTHON ?= python3
 BEARING = "$${CARGO_TARGET_DIR:-target}/release/bearing"
-ON_THE_SET = for level in 1 2; do $(BEARING) conform $(CONFORMANCE) --level $$level --jobs 2 --fresh --out target/conform/$(1)-$$level --with $(2) || exit 1; done
+ON_THE_SET = for level in $(3); do $(BEARING) conform $(CONFORMANCE) --level $$level --jobs 2 --fresh --out target/conform/$(1)-$$level --with $(2) || exit 1; done
 conform: conformance
 	$(CARGO) build --release --locked -q --manifest-path examples/fast/Cargo.toml --target-dir target/fast
 	$(PYTHON) conformance/check_schemas.py $(CONFORMANCE) $(BEARING)
 	$(PYTHON) conformance/check_packs.py $(CONFORMANCE) $(BEARING)
-	$(call ON_THE_SET,bearing,$(BEARING)" {kind} {resolved} --out {out}")
-	$(call ON_THE_SET,python,"$(PYTHON) conformance/example_python/candidate.py {kind} {resolved} {out}")
-	$(call ON_THE_SET,fast,"target/fast/release/fast {kind} {resolved} {out}")
+	$(call ON_THE_SET,bearing,$(BEARING)" {kind} {resolved} --out {out}",1 2)
+	$(call ON_THE_SET,python,"$(PYTHON) conformance/example_python/candidate.py {kind} {resolved} {out}",1 2)
+	$(call ON_THE_SET,fast,"target/fast/release/fast {kind} {resolved} {out}",1 2)
+	$(call ON_THE_SET,solids,"$(PYTHON) conformance/example_python/solids.py {kind} {resolved} {out}",3)
 
 ## A bearing as an FMU, checked by FMPy against runs. PYTHON needs fmpy.
 fmu:

@@ -27,6 +27,7 @@ CHANGES = {
     "damping": ("contact_damping", ["alpha"], 1.1),
     "dent": ("bearing", ["depth"], 1.1),
     "gravity": ("ball_forces", ["gravity"], 1.1),
+    "gyroscopic": ("body", ["axial"], 0.95),
     "hertz-exact": ("bearing", ["groove_radius", "conformity", "osculation"], 1.001),
     "hertz-fit": ("bearing", ["groove_radius", "conformity", "osculation"], 1.001),
     "housing-explicit": ("solid", ["youngs_modulus", "density"], 1.1),

@@ -8,6 +8,9 @@ use bearing_dynamics::output::fields::mesh_with_sets;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+/// Set of all elements in a Gmsh file of a mesh without element sets.
+const ALL: &str = "all";
+
 /// File for meshes, in m. A named bearing's mesh has that name in its file name: `block.left.msh`.
 pub struct MeshFile<'a> {
     path: &'a Path,
@@ -52,7 +55,7 @@ impl MeshFile<'_> {
         let mut lines = String::new();
         for ((_, mesh), path) in meshes.iter().zip(paths) {
             let bytes = match self.ending {
-                "msh" => write_gmsh(mesh)?.into_bytes(),
+                "msh" => write_gmsh(&with_all_elements(mesh))?.into_bytes(),
                 "inp" => write_abaqus(mesh)?.into_bytes(),
                 _ => mesh_with_sets(mesh)?,
             };
@@ -64,6 +67,16 @@ impl MeshFile<'_> {
         }
         Ok(lines)
     }
+}
+
+/// Readers of Gmsh files, Gmsh itself among them when it saves again, expect every element in a physical group.
+fn with_all_elements(mesh: &TetMesh) -> TetMesh {
+    let mut mesh = mesh.clone();
+    let is_taken = mesh.node_sets.contains_key(ALL);
+    if mesh.element_sets.is_empty() && !is_taken {
+        mesh.element_sets.insert(ALL.into(), (0..mesh.elements.len() as u32).collect());
+    }
+    mesh
 }
 
 /// Prints the last lines of a check: the meshes written, if any.

@@ -22,6 +22,8 @@ use std::time::{Duration, Instant};
 const NOT_CLAIMED: i32 = 3;
 /// Exit code for a scene that is not valid.
 const REFUSED: i32 = 2;
+/// Words in braces that a command may have.
+const REPLACED: [&str; 4] = ["resolved", "out", "kind", "scene"];
 /// How often a running program is looked at.
 const GLANCE: Duration = Duration::from_millis(5);
 
@@ -88,7 +90,7 @@ struct Verdict {
     status: Status,
     /// First difference, or what the program said.
     says: String,
-    /// Tags of which the program has no channels.
+    /// Groups of which the program has no channels.
     unclaimed: Vec<String>,
     /// Number of first rows that were compared, of a chaotic run.
     rows: Option<usize>,
@@ -104,13 +106,12 @@ struct Verdict {
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
     let packs = packs(arguments)?;
+    refuse_unknown(arguments)?;
     if packs.is_empty() {
         let set = arguments.set.display();
         let why = match arguments.set.join(MANIFEST).exists() {
-            true => "is one case pack. Hint: name the folder that holds it".into(),
-            false => {
-                format!("no case packs with these tags and level; tags are {}", tags(arguments)?)
-            }
+            true => "is one case pack. Hint: name the folder that holds it",
+            false => "no case packs that need only these tags, at this level",
         };
         return Err(format!("{set}: {why}").into());
     }
@@ -142,10 +143,27 @@ pub fn run(arguments: &Arguments) -> CommandResult {
 }
 
 /// All tags of a set.
-fn tags(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
-    let all = manifests(arguments)?;
-    let tags: BTreeSet<String> = all.into_iter().flat_map(|(_, of)| of.about.tags).collect();
-    Ok(tags.into_iter().collect::<Vec<_>>().join(", "))
+fn tags(arguments: &Arguments) -> Result<BTreeSet<String>, Box<dyn Error>> {
+    Ok(manifests(arguments)?.into_iter().flat_map(|(_, of)| of.about.tags).collect())
+}
+
+/// Refuses tags that no pack has, and parts of the command in braces that are not replaced.
+fn refuse_unknown(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let known = tags(arguments)?;
+    if let Some(tag) = arguments.tags.iter().find(|tag| !known.contains(*tag)) {
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        return Err(format!("--tags {tag}: no pack has it; tags are {}", known.join(", ")).into());
+    }
+    let words = arguments.with.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
+    let is_name = |word: &str| word.chars().all(|c| c.is_ascii_lowercase());
+    let mut words = words.map(|(word, _)| word).filter(|word| !word.is_empty() && is_name(word));
+    match words.find(|word| !REPLACED.contains(word)) {
+        Some(word) => {
+            let names = REPLACED.map(|name| format!("{{{name}}}")).join(", ");
+            Err(format!("--with {{{word}}}: replaced are {names}").into())
+        }
+        None => Ok(()),
+    }
 }
 
 /// Names and manifests of the packs asked for.
@@ -298,7 +316,7 @@ fn execute(
     Ok(Executed { code, late, said, seconds })
 }
 
-/// Status, first difference, and tags that are not claimed.
+/// Status, first difference, and groups of channels that are left out.
 fn verdict(
     pack: &Path,
     kind: &str,
@@ -316,19 +334,24 @@ fn verdict(
     if kind == "refused" {
         let refused = &json::read(&pack.join("summary.json"))?["refused"];
         let key = refused["key"].as_str().unwrap_or_default();
-        let placed = refused["line"].as_u64().is_none_or(|line| {
-            [":", "line "].iter().any(|before| found.said.contains(&format!("{before}{line}")))
-        });
+        let line = refused["line"].as_u64();
         if found.code != Some(REFUSED) {
             let says = format!("exit code {} for a scene that is not valid", found.code());
             return with(Status::Failed, says);
         }
-        return match (found.said.contains(key), placed) {
-            (true, true) => with(Status::Passed, String::new()),
-            (false, _) => with(Status::Failed, format!("the message does not name {key}: {last}")),
-            (true, false) => {
-                with(Status::Failed, format!("the message does not name the line: {last}"))
-            }
+        let mut naming = found.said.lines().filter(|said| has_word(said, key)).peekable();
+        if naming.peek().is_none() {
+            return with(Status::Failed, format!("the message does not name {key}: {last}"));
+        }
+        let is_placed = |said: &str| {
+            line.is_none_or(|line| {
+                let places = [format!("scene.toml:{line}"), format!("line {line}")];
+                places.iter().any(|place| has_word(said, place))
+            })
+        };
+        return match naming.any(is_placed) {
+            true => with(Status::Passed, String::new()),
+            false => with(Status::Failed, format!("the message does not name the line: {last}")),
         };
     }
     if found.code != Some(0) {
@@ -343,6 +366,12 @@ fn verdict(
             Ok((Status::Failed, lines.join(": "), compared.unclaimed))
         }
     }
+}
+
+/// Returns whether a text has a key (or one below it) or a number, and not as the beginning of a longer one.
+fn has_word(text: &str, word: &str) -> bool {
+    let goes_on = |rest: &str| rest.starts_with(|next: char| next.is_alphanumeric() || next == '_');
+    text.match_indices(word).any(|(at, _)| !goes_on(&text[at + word.len()..]))
 }
 
 fn line(of: &Verdict) -> String {

@@ -63,13 +63,15 @@ pub fn write(
     });
     let series = Series::new(columns, data)?;
     let entry = |(index, mode): (usize, &Mode)| -> Result<Value, ResultsError> {
-        let housings: f64 = mode.housings.iter().sum();
-        Ok(json!({
+        let mut entry = json!({
             "mode": index + 1,
             "frequency": quantity("frequency", frequency(mode), "Hz")?,
             "moves_most": names[moves_most(mode)],
-            "housings_share": quantity("share", housings, "1")?,
-        }))
+        });
+        if !mode.housings.is_empty() {
+            entry["housings_share"] = quantity("share", mode.housings.iter().sum(), "1")?;
+        }
+        Ok(entry)
     };
     let list: Result<Vec<Value>, _> = modes.iter().enumerate().map(entry).collect();
     let mut summary = Map::new();

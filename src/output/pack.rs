@@ -127,11 +127,36 @@ pub fn expected(summary: &Value) -> Option<Value> {
     Some(kept)
 }
 
-/// Removes meshes and solvers of housings and shafts.
+/// At any place: meshes and solvers of housings and shafts, shares of energy in modes, and explanations.
+const NOT_PACKED_BELOW: [&str; 16] = [
+    "mesh",
+    "solver",
+    "condensed",
+    "largest_unbalanced_part_of_load",
+    "across",
+    "housings_share",
+    "moves_most",
+    "fastest_excitation",
+    "peak_pressure_note",
+    "leakage",
+    "rolling_at",
+    "slip_is",
+    "contact_angle_is",
+    "amplitude_is",
+    "median_around_is",
+    "not_separated_from",
+];
+
 fn without_process(value: &mut Value) {
-    if let Some(parts) = value.as_object_mut() {
-        parts.retain(|name, _| !["mesh", "solver"].contains(&name.as_str()));
-        parts.values_mut().for_each(without_process);
+    match value {
+        Value::Object(parts) => {
+            parts.retain(|name, _| !NOT_PACKED_BELOW.contains(&name.as_str()));
+            // "every accepted step", "kinematic frequencies".
+            parts.retain(|name, of| !(of.is_string() && ["of", "are"].contains(&name.as_str())));
+            parts.values_mut().for_each(without_process);
+        }
+        Value::Array(list) => list.iter_mut().for_each(without_process),
+        _ => {}
     }
 }
 
@@ -234,11 +259,20 @@ fn readme(input: &PackInput) -> String {
             "The run is chaotic: the first {rows} rows of tables are compared, and statistics.\n"
         )
     });
+    let kind = input.about.kind.as_str();
+    if kind == "refused" {
+        return format!(
+            "Case pack: a scene that is not valid. A program refuses {}: exit code 2, and a message with the key and the \
+             line that summary.json names.\n",
+            input.scene_name
+        );
+    }
+    let files = if kind == "sweep" { "the tables" } else { "summary.json and the tables" };
     format!(
         "Case pack: a scene, and the expected results for checking another program.
 
 1. Solve resolved.json ({kind}) with your program. {scene} is the same scene, as written or with changed keys.
-2. Write summary.json and the tables in the same format into a folder, say candidate.
+2. Write {files} in the same format into a folder, say candidate.
 3. Run, from the folder that holds this one:
 
        bearing compare pack/ candidate/
@@ -248,11 +282,10 @@ fn readme(input: &PackInput) -> String {
 
 {rows}tolerances.json has the tolerances and their reasons. manifest.json has the sha256 of every file. If a ball has no load in both
 contacts of the reference, its position, approaches (gaps) and contact angles are not compared
-either (except in class f64-exact), because they are not determined. Angles are in degrees, all other
-quantities in SI units, as in the headers.
+either (except in class f64-exact), because they are not determined. Units are in the headers of tables and
+in the values of summary.json.
 ",
         scene = input.scene_name,
-        kind = input.about.kind,
         rows = rows.unwrap_or_default(),
     )
 }

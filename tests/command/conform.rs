@@ -105,13 +105,37 @@ fn a_changed_program_is_run_again() {
 
     let refused = |set: &Path, further: &[&str]| {
         let (set, out) = (text(set), text(&out));
-        let all = [&["conform", &set, "--with", "true", "--out", &out], further].concat();
+        let with: &[&str] = if further.contains(&"--with") { &[] } else { &["--with", "true"] };
+        let all = [&["conform", &set, "--out", &out], with, further].concat();
         crate::command_line_common::refused(&all)
     };
     let said = refused(&set, &["--tags", "static"]);
     assert!(said.contains("tags are modes, refused, run, statics, sweep"), "{said}");
+    let said = refused(&set, &["--tags", "statics,tlit"]);
+    assert!(said.contains("--tags tlit: no pack has it"), "{said}");
+    let said = refused(&set, &["--with", "program {output}"]);
+    assert!(said.contains("{output}: replaced are {resolved}, {out}, {kind}, {scene}"), "{said}");
     let said = refused(&set.join("tilted"), &[]);
     assert!(said.contains("is one case pack"), "{said}");
+}
+
+/// The message has key and line in one line, each as a word.
+#[test]
+fn refusals_name_key_and_line() {
+    let (root, set) = set();
+    let out = root.path().join("out");
+    for (message, expected) in [
+        ("scene.toml:5:1: bearing.colour: unknown", "passed"),
+        ("line 5: bearing.colour.tone: unknown", "passed"),
+        ("scene.toml:50:1: bearing.colour", "failed"),
+        ("scene.toml:1:5: bearing.colour", "failed"),
+        ("scene.toml:5:1: bearing.colours", "failed"),
+        ("scene.toml:5:1: bearing'; echo 'scene.toml:1:1: bearing.colour", "failed"),
+    ] {
+        let with = format!("echo '{message}'; exit 2");
+        let (_, rows) = conform(&set, &with, &out, &["--tags", "refused"]);
+        assert_eq!(rows[0].1, expected, "{message}: {}", rows[0].2);
+    }
 }
 
 /// Frequencies of a list, as a book prints them; in the second case one is 2e-3 off.
@@ -162,7 +186,7 @@ fn programs_that_leave_out_or_take_too_long_are_named() {
     assert!(says.contains("has no NaN"), "{says}");
     let (_, status, says) = status("mkdir -p {out}", &[]);
     assert_eq!(status, "failed", "{says}");
-    // All channels of a tag may be absent, one alone not.
+    // All channels of a group may be absent, one alone not.
     let pack = set.join("tilted");
     let without = |parts: &[&str]| {
         let out = root.path().join("candidate");
@@ -182,6 +206,14 @@ fn programs_that_leave_out_or_take_too_long_are_named() {
     assert!(code == 0 && said.contains("not claimed: life, stiffness"), "{said}");
     assert_eq!(without(&["/stiffness/x"]).0, 1);
     assert_eq!(without(&["/inner_race"]).0, 1);
+    // An extent is no direction: a turn less is another one.
+    let out = root.path().join("candidate");
+    let mut summary = json(&pack.join("summary.json"));
+    let extent = summary.pointer_mut("/load_zone/extent/value").unwrap();
+    *extent = (extent.as_f64().unwrap() - 360.0).into();
+    fs::write(out.join("summary.json"), summary.to_string()).unwrap();
+    let output = command().args(["compare", &text(&pack), &text(&out)]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
 }
 
 /// An interrupted comparison leaves no program behind, and names no pack as judged.

@@ -73,7 +73,7 @@ fn a_pack_has_the_mesh_of_its_housing() {
     for _ in 0..2 {
         // Over itself, too.
         let said = succeed(into_folder("pack", &scene, &pack, &[]));
-        assert!(said.starts_with("wrote 8 files"), "{said}");
+        assert!(said.starts_with("wrote 9 files"), "{said}");
     }
     let manifest = json(pack.join("manifest.json"));
     assert!(manifest["sha256"]["meshes/ring.msh"].is_string(), "{manifest}");
@@ -92,4 +92,23 @@ fn a_pack_has_the_mesh_of_its_housing() {
     let output = into_folder("pack", &scene, &place.path("other"), &[]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("is outside the scene's folder"), "{}", stderr(&output));
+}
+
+/// Another program reads the mesh that is solved, with every set.
+#[test]
+fn a_pack_has_the_mesh_as_it_is_solved() {
+    let place = Place::new();
+    let (pack, out) = (place.path("pack"), place.path("out"));
+    let cantilever = crate::solid_command_common::shipped("cantilever.toml");
+    succeed(into_folder("pack", &cantilever, &pack, &["--of", "statics"]));
+    let mut scene = json(pack.join("resolved.json"));
+    scene["solid"]["mesh"] = serde_json::json!({ "file": "mesh.msh", "unit": "m" });
+    assert!(scene["solid"].as_object_mut().unwrap().remove("set").is_some());
+    let from_file = pack.join("from_file.json");
+    fs::write(&from_file, scene.to_string()).unwrap();
+    succeed(into_folder("statics", &from_file, &out, &[]));
+    fs::remove_file(&from_file).unwrap();
+    let mut compare = command("compare", &pack, &[]);
+    compare.arg(&out);
+    assert!(succeed(compare).starts_with("equal: "));
 }

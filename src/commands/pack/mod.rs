@@ -76,14 +76,18 @@ fn write_one(
     // With changed keys, or with a base outside, the text of the scene is not the scene.
     let is_as_written = changes.is_empty() && bases.iter().all(is_inside);
     let scene_name = format!("scene.{}", if is_as_written { extension } else { "json" });
-    let mut files = match resolve_subject(&document)? {
-        Subject::Assembly(scene) => mesh_files(&scene)?,
-        Subject::Solid(scene) => solid_mesh_files(std::iter::once(&*scene))?,
+    let (mut files, is_meshed) = match resolve_subject(&document)? {
+        Subject::Assembly(scene) => {
+            let is_housed = scene.bearings.iter().any(|placed| placed.housing.is_some());
+            (mesh_files(&scene)?, is_housed)
+        }
+        Subject::Solid(scene) => (solid_mesh_files(std::iter::once(&*scene))?, true),
     };
     if is_as_written {
         files.extend(bases.into_iter().map(|(name, text)| (name, text.as_bytes().to_vec())));
     }
-    let own: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let meshes = if is_meshed { solved::meshes(path, changes, &files)? } else { Vec::new() };
+    let own: Vec<&str> = files.iter().chain(&meshes).map(|(name, _)| name.as_str()).collect();
     refuse_foreign_files(folder, &scene_name, &[&own[..], &solved::TABLES].concat())?;
     let solved = Solved::of(kind, path, changes)?;
     let (summary, tolerances, tables) = if expected.is_empty() {
@@ -96,6 +100,7 @@ fn write_one(
         true => document.text().to_string(),
         false => pretty(&solved.summary["scene"]),
     };
+    files.extend(meshes);
     let input = PackInput {
         scene_name: &scene_name,
         scene_text: &scene_text,

@@ -19,13 +19,15 @@ const PARTS: usize = 5;
 /// Largest shift of a start, rad.
 pub const FARTHEST_START: f64 = STARTS as f64 * NEXT_START;
 
-/// Scenes whose results differ by rounding alone, by the length of the elements of beams, or by the modes of shafts.
+/// Scenes whose results differ by rounding alone, by the length of the elements of beams, by the modes of shafts, or by
+/// meshes that a pack does not have.
 pub fn alike(scene: &Value) -> Vec<Value> {
     let noises = [NOISE, -NOISE].map(|noise| {
         scaled(scene, &[("density", 1.0 + noise), ("youngs_modulus", 1.0 - noise)], &[])
     });
     let modes = scaled(scene, &[("modes_to", 2.0)], &["body"]);
-    let others = noises.into_iter().chain([shifted(scene, TAU), shorter_beams(scene), modes]);
+    let others = [shifted(scene, TAU), shorter_beams(scene), modes, finer_meshes(scene)];
+    let others = noises.into_iter().chain(others);
     others.flatten().chain([rounded(scene, 0), rounded(scene, 1)]).collect()
 }
 
@@ -111,6 +113,38 @@ fn shifted(scene: &Value, by: f64) -> Option<Value> {
         has_balls
     };
     other.get_mut("bearing").is_some_and(|of| in_tables(of, &shift)).then_some(other)
+}
+
+/// The scene with half as many cells again in shafts of elements and bushings, and with bushings fitted to ten times the
+/// frequency; `None` without them.
+fn finer_meshes(scene: &Value) -> Option<Value> {
+    let mut other = scene.clone();
+    let finer = |map: &mut serde_json::Map<String, Value>| {
+        let mut any = false;
+        for key in ["around", "radial", "axial"] {
+            // Cells come in twos.
+            if let Some(cells) = map.get(key).and_then(Value::as_u64).filter(|cells| cells % 4 == 0)
+            {
+                map.insert(key.into(), json!(cells + cells / 2));
+                any = true;
+            }
+        }
+        if let Some(fastest) = map.get("fastest").and_then(Value::as_f64) {
+            map.insert("fastest".into(), json!(10.0 * fastest));
+        }
+        any
+    };
+    let tables = ["body", "spring"].iter();
+    let found =
+        tables.filter(|table| other.get_mut(**table).is_some_and(|of| in_tables(of, &finer)));
+    let count = found.count();
+    (count > 0).then_some(other)
+}
+
+/// Returns whether there are shafts, as beams or of elements.
+pub fn has_shafts(scene: &Value) -> bool {
+    let bodies = scene["body"].as_object().into_iter().flatten();
+    bodies.into_iter().any(|(_, body)| body.get("beam").is_some())
 }
 
 pub fn has_beams(scene: &Value) -> bool {

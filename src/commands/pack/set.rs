@@ -14,7 +14,7 @@
 //! ```
 
 use super::solved::Kind;
-use super::tolerances::tags;
+use super::tolerances::groups;
 use super::{Fallible, write_one};
 use crate::commands::earlier::{Writes, claimed};
 use crate::commands::{CommandResult, Outcome, print};
@@ -130,7 +130,7 @@ pub fn only_expected(
     expected: &BTreeMap<String, [f64; 2]>,
 ) -> Fallible<(Value, Tolerances)> {
     let mut only = json!({ "scene": summary["scene"], "kind": summary["kind"] });
-    let mut tolerances = Tolerances { tags: tags(), partial: true, ..Tolerances::default() };
+    let mut tolerances = Tolerances { groups: groups(), partial: true, ..Tolerances::default() };
     for (path, [value, relative]) in expected {
         let parts: Vec<&str> = path.split('.').collect();
         let pointer = format!("/{}", parts.join("/"));

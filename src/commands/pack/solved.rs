@@ -2,6 +2,7 @@
 
 use super::Fallible;
 use super::neighbours::has_beams;
+use crate::commands::sweep::housings::MeshFiles;
 use bearing_dynamics::output::json;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -104,6 +105,28 @@ impl Solved {
         }
         Ok(tables)
     }
+}
+
+/// Mesh of the solid, `mesh.msh`, or of the housings, `mesh.NAME.msh` if their bearings have names: as it is solved, with all
+/// sets, in m, in the coordinates of the scene.
+pub fn meshes(scene: &Path, changes: &[String], files: &MeshFiles) -> Fallible<MeshFiles> {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("mesh.msh");
+    bearing(&["check", &scene.to_string_lossy(), "--mesh", &path.to_string_lossy()], changes)?;
+    let mut meshes = MeshFiles::new();
+    for entry in std::fs::read_dir(folder.path())? {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if files.iter().any(|(taken, _)| *taken == name) {
+            return Err(format!(
+                "{name} is the name that a pack gives to the mesh as solved; rename the file"
+            )
+            .into());
+        }
+        meshes.push((name, std::fs::read(entry.path())?));
+    }
+    meshes.sort();
+    Ok(meshes)
 }
 
 /// Share of the highest frequency of a shaft up to which its modes are packed: those above have errors of the component

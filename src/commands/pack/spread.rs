@@ -12,6 +12,8 @@ use std::path::Path;
 /// Least tolerance of forces over the largest force, of moments over that times the largest length, and so for
 /// stiffnesses: ten times the residual at which the search ends.
 const OF_SEARCH: f64 = 1e-10;
+/// Least tolerance of tilts, deg: what a moment of 1e-10 of 5 kN on 50 mm turns a race on 5 kN m/rad.
+const OF_TILT: f64 = 3e-10;
 /// A relative tolerance is written where it is at most this many times the share of the scale that would do: then it
 /// is tighter for the small values of a list, and not much wider for the large ones.
 const RELATIVE_UP_TO: f64 = 3.0;
@@ -99,10 +101,12 @@ impl Spread {
                 Some("a measure of the solution process")
             } else if channel == "warnings" {
                 Some("warnings are those of this program")
-            } else if channel.starts_with("extremes.") && place.contains(&last) {
+            } else if channel == "sections[].section" {
+                Some("a name for readers")
+            } else if channel.starts_with("extremes.") && place.contains(&last)
+                || channel.contains(".at.")
+            {
                 Some("rounding decides which of several nearly equal values is the largest")
-            } else if last == "moves_most" {
-                Some("of several places with the same amplitude rounding decides")
             } else if channel.contains(".lines.")
                 && ["bin_frequency", "bins_from_nearest"].contains(&last)
             {
@@ -144,6 +148,35 @@ impl Spread {
             Some((channel.clone(), self.tolerance(&found, factor, reason)?))
         };
         self.largest.iter().filter_map(of).collect()
+    }
+
+    /// Raises all tolerances to this share: relative, and of all but frequencies also of the scale, so that a small
+    /// component of a vector needs no more digits than the largest.
+    pub fn add_least(
+        &self,
+        channels: &mut Channels,
+        least: impl Fn(&str) -> f64,
+        reason: &str,
+    ) -> Fallible<()> {
+        for (name, unit) in self.channels()? {
+            let Some(class) = self.class.tolerance(&unit) else { continue };
+            let least = least(&name);
+            let mut own = channels.get(&name).cloned().unwrap_or_default();
+            let relative = own.relative.unwrap_or(class.relative);
+            let share = own.scale_relative.unwrap_or(class.scale_relative);
+            let is_frequency = ["Hz", "rad/s"].contains(&unit.as_str());
+            let is_wide = relative >= least && (is_frequency || share >= least);
+            if own.class == Some(ToleranceClass::Ignored) || is_wide {
+                continue;
+            }
+            own.relative = Some(relative.max(least));
+            if !is_frequency {
+                own.scale_relative = Some(share.max(least));
+            }
+            own.reason = Some(reason.into());
+            channels.insert(name, own);
+        }
+        Ok(())
     }
 
     /// Widens the tolerances of the largest values of runs, which are those of accepted steps.
@@ -191,13 +224,16 @@ impl Spread {
         Some(own)
     }
 
-    /// Raises the floors of forces, moments and stiffnesses to what a search leaves.
+    /// Raises the floors of forces, moments, stiffnesses and tilts to what a search leaves.
     pub fn add_floors(&self, channels: &mut Channels) -> Fallible<()> {
         for (name, unit) in self.channels()? {
-            if !["N", "N m", "N/m", "N/rad", "N m/m", "N m/rad"].contains(&unit.as_str()) {
-                continue;
-            }
-            let floor = OF_SEARCH * self.magnitudes.of(&unit);
+            let floor = match unit.as_str() {
+                "N" | "N m" | "N/m" | "N/rad" | "N m/m" | "N m/rad" => {
+                    OF_SEARCH * self.magnitudes.of(&unit)
+                }
+                "deg" => OF_TILT,
+                _ => continue,
+            };
             let class = self.class.tolerance(&unit).map_or(0.0, |class| class.absolute_floor);
             let own = channels.get(&name).and_then(|own| own.absolute_floor).unwrap_or(class);
             if floor > own {

@@ -1,7 +1,9 @@
 //! Tolerances of a pack, measured: from how much the results differ from those of scenes next to it.
 
 use super::Fallible;
-use super::neighbours::{FARTHEST_START, STARTS, alike, finer, has_beams, neighbour, starts};
+use super::neighbours::{
+    FARTHEST_START, STARTS, alike, finer, has_beams, has_shafts, neighbour, starts,
+};
 use super::solved::{Kind, Solved};
 use super::spread::Spread;
 use bearing_dynamics::output::Series;
@@ -36,8 +38,16 @@ const OF_STARTS: f64 = 5.0;
 /// Share of the rows in which all starts were alike that is compared: a further start may part a little earlier.
 const ROWS_COMPARED: f64 = 0.5;
 
-/// Channels that a program may leave out, by what it then does not claim.
-const TAGS: [(&str, &[&str]); 9] = [
+/// Least tolerance with shafts, and of modes with housings: theories of shafts of the second order differ by 4e-7 of the
+/// deflection, from linear ones by 3e-5; elements of usual rotor programs, 24 a shaft, by 2e-5; component modes by 4e-6.
+const OF_SHAFTS: f64 = 1e-4;
+/// Least tolerance with solids: finite-element programs print seven digits, and solve to about as many.
+const OF_SOLIDS: f64 = 1e-6;
+/// Least tolerance of stresses in housings: of the second order in the strain, 2.5e-4 for an interference of 5 um.
+const OF_STRESSES: f64 = 1e-3;
+
+/// Groups of channels that a program may leave out.
+const GROUPS: [(&str, &[&str]); 9] = [
     ("stiffness", &["stiffness", "stiffness_to_ground"]),
     ("life", &["rating_life"]),
     ("hertz", &["hertz"]),
@@ -49,16 +59,16 @@ const TAGS: [(&str, &[&str]); 9] = [
     ("inertia", &["inertia"]),
 ];
 
-/// [`TAGS`] as a pack has them.
-pub fn tags() -> BTreeMap<String, Vec<String>> {
+/// [`GROUPS`] as a pack has them.
+pub fn groups() -> BTreeMap<String, Vec<String>> {
     let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();
-    TAGS.iter().map(|(tag, of)| (tag.to_string(), names(of))).collect()
+    GROUPS.iter().map(|(group, of)| (group.to_string(), names(of))).collect()
 }
 
 pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<Tolerances> {
     let of_runs = solved.is_of_runs(kind);
     let class = class_of(of_runs);
-    let mut all = Tolerances { class: Some(class), tags: tags(), ..Tolerances::default() };
+    let mut all = Tolerances { class: Some(class), groups: groups(), ..Tolerances::default() };
     let scene = &solved.summary["scene"];
     let again = |scene: Value| Solved::again(kind, &scene, files);
     let mut spread = Spread::new(kind, class, solved)?;
@@ -101,6 +111,17 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
     match of_runs {
         true => spread.widen_extremes(&mut all.channels)?,
         false => spread.add_floors(&mut all.channels)?,
+    }
+    if has_shafts(scene) || kind == Kind::Modes && scene.get("housing").is_some() {
+        let reason = "shafts of other theories, elements or component modes";
+        spread.add_least(&mut all.channels, |_| OF_SHAFTS, reason)?;
+    }
+    if scene.get("solid").is_some() {
+        let is_stress = |name: &str| name.contains("von_mises") && scene.get("housing").is_some();
+        let least = |name: &str| if is_stress(name) { OF_STRESSES } else { OF_SOLIDS };
+        let reason =
+            "digits of finite-element programs; stresses of the second order in the strain";
+        spread.add_least(&mut all.channels, least, reason)?;
     }
     all.channels.extend(spread.left_out()?);
     // Only the low modes of a shaft are packed.

@@ -28,9 +28,9 @@ fn vector_stem(channel: &str) -> &str {
 }
 
 /// Difference of two angles, where one whole turn counts as zero: 315° and −45° are the same direction.
-/// More than one turn is not removed, because turns are counted in such channels.
-fn folded(difference: f64, unit: &str) -> f64 {
-    let Some(turn) = turn(unit) else { return difference };
+/// More than one turn is not removed, because turns are counted in such channels. Extents are no directions.
+fn folded(difference: f64, channel: &str, unit: &str) -> f64 {
+    let Some(turn) = turn(unit).filter(|_| !channel.ends_with("extent")) else { return difference };
     if difference < 1.5 * turn { difference.min((difference - turn).abs()) } else { difference }
 }
 
@@ -162,20 +162,21 @@ impl<'a> Judge<'a> {
         tolerance
     }
 
-    /// Tags of which the present file of the candidate has no channel.
-    fn absent_tags<'n>(&self, names: impl Iterator<Item = &'n str>) -> BTreeSet<&'a str> {
-        let mut absent: BTreeSet<&str> = self.tolerances.tags.keys().map(String::as_str).collect();
-        for tag in names.filter_map(|name| self.tolerances.tag(name)) {
-            absent.remove(tag);
+    /// Groups of which the present file of the candidate has no channel.
+    fn absent_groups<'n>(&self, names: impl Iterator<Item = &'n str>) -> BTreeSet<&'a str> {
+        let mut absent: BTreeSet<&str> =
+            self.tolerances.groups.keys().map(String::as_str).collect();
+        for group in names.filter_map(|name| self.tolerances.group(name)) {
+            absent.remove(group);
         }
         absent
     }
 
-    /// Notes a missing channel as not claimed if all of its tag are missing.
+    /// Notes a missing channel as not claimed if all of its group are missing.
     fn is_unclaimed(&mut self, channel: &str, absent: &BTreeSet<&str>) -> bool {
-        let tag = self.tolerances.tag(channel).filter(|tag| absent.contains(tag));
-        self.unclaimed.extend(tag.map(str::to_string));
-        tag.is_some()
+        let group = self.tolerances.group(channel).filter(|group| absent.contains(group));
+        self.unclaimed.extend(group.map(str::to_string));
+        group.is_some()
     }
 
     pub fn diverge(
@@ -221,7 +222,8 @@ impl<'a> Judge<'a> {
     ) {
         let mut difference = (candidate - reference).abs();
         if !tolerance.is_exact() {
-            difference = folded(difference, &self.channels[index].unit);
+            let of = &self.channels[index];
+            difference = folded(difference, &of.channel, &of.unit);
         }
         let allowed = tolerance.allowed(reference, scale);
         let finite = reference.is_finite() && candidate.is_finite();
@@ -259,7 +261,7 @@ impl<'a> Judge<'a> {
         }
         let label = |row: usize| row_label(reference, row);
         let compared = self.tolerances.rows.map_or(rows, |first| rows.min(first));
-        let absent = self.absent_tags(candidate.columns().iter().map(|c| c.name.as_str()));
+        let absent = self.absent_groups(candidate.columns().iter().map(|c| c.name.as_str()));
         let unloaded = unloaded::unloaded_rows(reference);
         let mut left_out = false;
         for (position, column) in reference.columns().iter().enumerate() {
@@ -324,7 +326,7 @@ impl<'a> Judge<'a> {
             }
         }
         let places = unloaded::unloaded_places(reference);
-        let absent = self.absent_tags(candidate.iter().map(|leaf| leaf.channel.as_str()));
+        let absent = self.absent_groups(candidate.iter().map(|leaf| leaf.channel.as_str()));
         let mut left_out = false;
         // Channel → its number in `self.channels` and its tolerance, `None` if it is not compared.
         let mut opened: BTreeMap<&str, Option<(usize, Tolerance)>> = BTreeMap::new();

@@ -205,10 +205,10 @@ pub struct Tolerances {
     pub class: Option<ToleranceClass>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub channels: BTreeMap<String, ChannelTolerance>,
-    /// Channels that a program may leave out, all of a tag or none: names as above, or `*` and
+    /// Channels that a program may leave out, all of a group or none: names as above, or `*` and
     /// the end or the start of a name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub tags: BTreeMap<String, Vec<String>>,
+    pub groups: BTreeMap<String, Vec<String>>,
     /// Only these first rows of tables are compared: later ones depend on the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rows: Option<usize>,
@@ -299,15 +299,15 @@ impl Tolerances {
             .map(|(name, entry)| (name.as_str(), entry))
     }
 
-    /// The tag of a channel.
-    pub fn tag(&self, channel: &str) -> Option<&str> {
+    /// The group of a channel.
+    pub fn group(&self, channel: &str) -> Option<&str> {
         let fits = |name: &String| match (name.strip_prefix('*'), name.strip_suffix('*')) {
             (Some(end), _) => channel.ends_with(end),
             (None, Some(start)) => channel.starts_with(start),
             (None, None) => is_or_holds(name, channel),
         };
-        let mut tags = self.tags.iter();
-        tags.find(|(_, names)| names.iter().any(fits)).map(|(tag, _)| tag.as_str())
+        let mut groups = self.groups.iter();
+        groups.find(|(_, names)| names.iter().any(fits)).map(|(group, _)| group.as_str())
     }
 
     /// Class name and tolerance of a channel; the tolerance is `None` if the channel is not compared.

@@ -8,8 +8,8 @@ use crate::solids::rubber::harmonic::{ComplexStiffness, complex_stiffness};
 use crate::solids::rubber::model::RubberModel;
 use std::f64::consts::TAU;
 
-/// Relative change of the stiffness by the last vector, far below the error of a mesh.
-const TOLERANCE: f64 = 1e-6;
+/// Relative change of the stiffness by the last vector: the loss factor, a hundredth of it, keeps ten digits.
+const TOLERANCE: f64 = 1e-10;
 
 /// Response at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
