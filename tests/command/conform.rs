@@ -119,6 +119,28 @@ fn a_changed_program_is_run_again() {
     assert!(said.contains("is one case pack"), "{said}");
 }
 
+/// What explains or describes our way to the results is not asked of another program; shafts of other theories pass.
+#[test]
+fn packs_ask_for_results_alone() {
+    let (_root, set) = set();
+    let of = |pack: &str, file: &str| read(&set.join(pack).join(file));
+    for name in ["across", "moves_most", "housings_share"] {
+        assert!(!of("whirl", "summary.json").contains(name), "{name}");
+    }
+    for name in ["rolling_at", "slip_is", "every accepted step"] {
+        assert!(!of("settling", "summary.json").contains(name), "{name}");
+    }
+    let tolerances: Value = serde_json::from_str(&of("whirl", "tolerances.json")).unwrap();
+    let whirl = &tolerances["channels"]["rotor.whirl[].frequency"];
+    assert!(whirl["relative"].as_f64().unwrap() >= 1e-4, "{whirl}");
+    // A share of the highest frequency would be too much for the lowest.
+    assert!(whirl["scale_relative"].as_f64().unwrap_or(0.0) <= 1e-9, "{whirl}");
+    let tilted: Value = serde_json::from_str(&of("tilted", "tolerances.json")).unwrap();
+    let channels = tilted["channels"].as_object().unwrap();
+    assert!(!channels.is_empty());
+    assert!(channels.values().all(|of| of["relative"].as_f64().unwrap_or(0.0) <= 1e-6));
+}
+
 /// The message has key and line in one line, each as a word.
 #[test]
 fn refusals_name_key_and_line() {
