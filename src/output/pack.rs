@@ -128,7 +128,8 @@ pub fn expected(summary: &Value) -> Option<Value> {
 }
 
 /// At any place: meshes and solvers of housings and shafts, shares of energy in modes, and explanations.
-const NOT_PACKED_BELOW: [&str; 16] = [
+const NOT_PACKED_BELOW: [&str; 17] = [
+    "turned_over",
     "mesh",
     "solver",
     "condensed",

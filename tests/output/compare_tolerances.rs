@@ -250,6 +250,30 @@ fn a_summary_leaves_out_where_balls_without_load_are_shown_and_nothing_else() {
             assert!(!result.equal && result.differing == 1, "{race}: {}", report(&result));
         }
     }
+    // The same in an assembly, by name of the bearing.
+    let below = |(pointer, to): &(String, Value)| (format!("/bearings/left{pointer}"), to.clone());
+    let assembly = json!({ "bearings": { "left": { "balls": summary["balls"] } } });
+    let moved: Vec<_> = elsewhere.iter().map(below).collect();
+    assert!(outcome(&assembly, &moved, reordered).equal);
+    let loaded = below(&(at(loaded, "position/y"), json!(0.03)));
+    assert!(!outcome(&assembly, &[loaded], reordered).equal);
+}
+
+/// A quantity may have a place next to its value; a program that gives none has the same quantity.
+#[test]
+fn a_quantity_with_a_place_is_that_quantity() {
+    let root = tempfile::tempdir().unwrap();
+    let [expected, given] = ["a.json", "b.json"].map(|name| root.path().join(name));
+    let place =
+        json!({ "largest": { "value": 2.0, "unit": "Pa", "at": { "value": 1.0, "unit": "m" } } });
+    fs::write(&expected, json!({ "largest": { "value": 2.0, "unit": "Pa" } }).to_string()).unwrap();
+    fs::write(&given, place.to_string()).unwrap();
+    let [reordered, _] = CLASSES;
+    assert!(compared(&expected, &given, reordered).equal);
+    let other = place.to_string().replace("2.0", "2.1");
+    fs::write(&given, other).unwrap();
+    let result = compared(&expected, &given, reordered);
+    assert_eq!(result.first_divergence.unwrap().channel, "largest");
 }
 
 #[test]

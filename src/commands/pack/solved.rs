@@ -130,8 +130,8 @@ pub fn meshes(scene: &Path, changes: &[String], files: &MeshFiles) -> Fallible<M
 }
 
 /// Share of the highest frequency of a shaft up to which its modes are packed: those above have errors of the component
-/// modes and elements of which the shaft consists.
-const LOW: f64 = 0.25;
+/// modes, and of the elements of usual programs, which grow with the square of the frequency.
+const LOW: f64 = 0.05;
 
 /// Removes the high ones of the modes of a shaft.
 fn keep_low_modes(summary: &mut Value) {

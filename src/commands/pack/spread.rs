@@ -14,6 +14,9 @@ use std::path::Path;
 const OF_SEARCH: f64 = 1e-10;
 /// Least tolerance of tilts, deg: what a moment of 1e-10 of 5 kN on 50 mm turns a race on 5 kN m/rad.
 const OF_TILT: f64 = 3e-10;
+/// Least tolerances of damping ratios and of directions of whirl: what eigenvalues and vectors of other solvers have.
+const OF_DAMPING: f64 = 1e-8;
+const OF_DIRECTION: f64 = 1e-3;
 /// A relative tolerance is written where it is at most this many times the share of the scale that would do: then it
 /// is tighter for the small values of a list, and not much wider for the large ones.
 const RELATIVE_UP_TO: f64 = 3.0;
@@ -51,6 +54,8 @@ pub struct Spread {
     reference: tempfile::TempDir,
     largest: BTreeMap<String, Found>,
     magnitudes: Magnitudes,
+    /// Modes without rotation.
+    is_at_rest: bool,
 }
 
 impl Spread {
@@ -68,7 +73,8 @@ impl Spread {
             *largest = channel.spread.scale.max(*largest);
         }
         let largest = BTreeMap::new();
-        Ok(Spread { class, kind, rows: None, reference, largest, magnitudes })
+        let is_at_rest = solved.summary["rotor"]["speed"]["value"] == 0.0;
+        Ok(Spread { class, kind, rows: None, reference, largest, magnitudes, is_at_rest })
     }
 
     pub fn add(&mut self, other: &Solved) -> Fallible<()> {
@@ -103,6 +109,8 @@ impl Spread {
                 Some("warnings are those of this program")
             } else if channel == "sections[].section" {
                 Some("a name for readers")
+            } else if channel == "rotor.whirl[].direction" && self.is_at_rest {
+                Some("at rest a mode has no direction")
             } else if channel.starts_with("extremes.") && place.contains(&last)
                 || channel.contains(".at.")
             {
@@ -232,6 +240,8 @@ impl Spread {
                     OF_SEARCH * self.magnitudes.of(&unit)
                 }
                 "deg" => OF_TILT,
+                _ if name.contains("damping_ratio") => OF_DAMPING,
+                _ if name.contains("direction") => OF_DIRECTION,
                 _ => continue,
             };
             let class = self.class.tolerance(&unit).map_or(0.0, |class| class.absolute_floor);
@@ -240,7 +250,8 @@ impl Spread {
                 let own = channels.entry(name).or_default();
                 if own.class != Some(ToleranceClass::Ignored) {
                     own.absolute_floor = Some(floor);
-                    own.reason.get_or_insert_with(|| "ten times the residual of a search".into());
+                    own.reason
+                        .get_or_insert_with(|| "residuals of searches and of eigenvalues".into());
                 }
             }
         }

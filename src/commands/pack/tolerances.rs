@@ -124,8 +124,8 @@ pub fn of(kind: Kind, solved: &Solved, files: &[(String, Vec<u8>)]) -> Fallible<
         spread.add_least(&mut all.channels, least, reason)?;
     }
     all.channels.extend(spread.left_out()?);
-    // Only the low modes of a shaft are packed.
-    all.partial = kind == Kind::Modes && has_beams(scene);
+    // Another program may list more modes.
+    all.partial = kind == Kind::Modes;
     Ok(all)
 }
 

@@ -112,11 +112,13 @@ fn collect(
         Value::Object(map) if map.is_empty() => push("", LeafValue::Text("{}".into())),
         Value::Array(items) if items.is_empty() => push("", LeafValue::Text("[]".into())),
         Value::Object(map) => {
-            if let Some((real, unit)) = quantity(value) {
+            let own = quantity(value);
+            if let Some((real, unit)) = own {
                 push(unit, LeafValue::Real(real));
-                return Some(());
             }
-            for (key, item) in map {
+            // What stands next to value and unit, such as the place of a largest value.
+            let is_own = |key: &str| own.is_some() && ["value", "unit"].contains(&key);
+            for (key, item) in map.iter().filter(|(key, _)| !is_own(key)) {
                 collect(item, &below(path, key), &below(channel, key), room, found)?;
             }
         }
@@ -140,9 +142,9 @@ fn collect(
     Some(())
 }
 
-/// Value and unit of a `{"value", "unit"}` object. A `null` value is read as NaN.
+/// Value and unit of an object with `"value"` and `"unit"`. A `null` value is read as NaN.
 fn quantity(value: &Value) -> Option<(f64, &str)> {
-    let map = value.as_object().filter(|map| map.len() == 2)?;
+    let map = value.as_object()?;
     let unit = map.get("unit")?.as_str()?;
     match map.get("value")? {
         Value::Number(number) => Some((number.as_f64().unwrap_or(f64::NAN), unit)),

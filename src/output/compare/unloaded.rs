@@ -61,15 +61,11 @@ pub fn unloaded_places(leaves: &[Leaf]) -> HashSet<&str> {
             .iter()
             .all(|race| idle_contacts.contains(format!("{ball}.{race}").as_str()))
     };
-    leaves
-        .iter()
-        .map(|leaf| leaf.path.as_str())
-        .filter(|path| {
-            path.strip_prefix("balls[").and_then(|rest| rest.split_once("].")).is_some_and(
-                |(index, name)| {
-                    is_place(&name.replace('.', "_")) && is_unloaded(&format!("balls[{index}]"))
-                },
-            )
-        })
-        .collect()
+    // `balls[3].inner.approach`, in an assembly `bearings.left.balls[3].inner.approach`.
+    let follows = |path: &&str| {
+        let Some((ball, name)) = path.split_once("].") else { return false };
+        let is_ball = ball.rsplit('.').next().is_some_and(|last| last.starts_with("balls["));
+        is_ball && is_place(&name.replace('.', "_")) && is_unloaded(&format!("{ball}]"))
+    };
+    leaves.iter().map(|leaf| leaf.path.as_str()).filter(follows).collect()
 }
