@@ -35,7 +35,7 @@ conformance:
 	"$${CARGO_TARGET_DIR:-target}/release/bearing" pack conformance/set.toml --jobs 2 --out $(CONFORMANCE)
 	tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf - -C target conformance | gzip -n9 > $(CONFORMANCE).tar.gz
 
-## The form of all files of the set, what its packs find, three programs on its levels 1 and 2, and one on level 3. PYTHON needs
+## The form of all files of the set, what its packs find, three programs on its levels 1 and 2, one each on 3 and 4. PYTHON needs
 ## numpy, scipy, meshio, jsonschema.
 PYTHON ?= python3
 BEARING = "$${CARGO_TARGET_DIR:-target}/release/bearing"
@@ -48,6 +48,7 @@ conform: conformance
 	$(call ON_THE_SET,python,"$(PYTHON) conformance/example_python/candidate.py {kind} {resolved} {out}",1 2)
 	$(call ON_THE_SET,fast,"target/fast/release/fast {kind} {resolved} {out}",1 2)
 	$(call ON_THE_SET,solids,"$(PYTHON) conformance/example_python/solids.py {kind} {resolved} {out}",3)
+	$(call ON_THE_SET,rotors,"$(PYTHON) conformance/example_python/rotors.py {kind} {resolved} {out}",4)
 
 ## A bearing as an FMU, checked by FMPy against runs. PYTHON needs fmpy.
 fmu:

@@ -37,6 +37,7 @@ CHANGES = {
     "impact": ("inner_race", ["half_sine"], 1.1),
     "life": ("inner_race", ["load"], 1.01),
     "motion": ("inner_race", "body", ["load", "moment", "half_sine", "displacement", "amplitude", "force", "speed", "ramp", "fit"], 1.1),
+    "pockets": ("bearing", ["pocket_radius"], 1.001),
     "rigid-shaft": ("body", ["mass", "load", "moment"], 1.1),
     "rotating-load": ("inner_race", ["force", "phase", "speed"], 1.1),
     "rubber-dynamic": ("solid", ["gamma"], 1.1),

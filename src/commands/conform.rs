@@ -46,7 +46,7 @@ pub struct Arguments {
     /// Longest time for one pack, s
     #[arg(long, default_value_t = 600.0)]
     timeout: f64,
-    /// Folder of results and report; packs that passed there are not run again
+    /// Folder of results and report; after an interruption packs that passed there are not run again
     #[arg(long, default_value = "results/conform")]
     out: PathBuf,
     /// Run all packs again
@@ -115,12 +115,16 @@ pub fn run(arguments: &Arguments) -> CommandResult {
         };
         return Err(format!("{set}: {why}").into());
     }
+    // Only what an interruption has left is gone on with: behind the same command there may be another program.
+    let finished = arguments.out.join("results.json");
+    let goes_on = !arguments.fresh && !finished.exists();
+    let _ = std::fs::remove_file(&finished);
     let interrupted = interruption(|| std::process::exit(1))?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.into()).build()?;
     let verdicts: Result<Vec<Verdict>, String> = pool.install(|| {
         let each = packs.into_par_iter();
         each.map(|(name, manifest)| {
-            let verdict = judge(arguments, &name, manifest.about, &interrupted)
+            let verdict = judge(arguments, &name, manifest.about, goes_on, &interrupted)
                 .map_err(|e| format!("{name}: {e}"))?;
             print(&line(&verdict)).map_err(|error| error.to_string())?;
             Ok(verdict)
@@ -133,7 +137,7 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     let report = arguments.out.join("report.md");
     write_atomic(&report, page(arguments, &verdicts, &text).as_bytes())?;
     let all = pretty(&serde_json::to_value(&verdicts)?);
-    write_atomic(&arguments.out.join("results.json"), all.as_bytes())?;
+    write_atomic(&finished, all.as_bytes())?;
     print(&format!("wrote results.json and report.md to {}\n", arguments.out.display()))?;
     Ok(if verdicts.iter().any(|of| of.status.is_failure()) {
         Outcome::Different
@@ -154,7 +158,9 @@ fn refuse_unknown(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
         return Err(format!("--tags {tag}: no pack has it; tags are {}", known.join(", ")).into());
     }
-    let words = arguments.with.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
+    // Variables of the shell are no words of ours.
+    let command = arguments.with.replace("${", "");
+    let words = command.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
     let is_name = |word: &str| word.chars().all(|c| c.is_ascii_lowercase());
     let mut words = words.map(|(word, _)| word).filter(|word| !word.is_empty() && is_name(word));
     match words.find(|word| !REPLACED.contains(word)) {
@@ -201,13 +207,14 @@ fn judge(
     arguments: &Arguments,
     name: &str,
     about: About,
+    goes_on: bool,
     interrupted: &AtomicBool,
 ) -> Result<Verdict, Box<dyn Error>> {
     let pack = arguments.set.join(name);
     let folder = arguments.out.join(name);
     let path = folder.join("verdict.json");
     let key = key(arguments, &pack)?;
-    let known = std::fs::read(&path).ok().filter(|_| !arguments.fresh);
+    let known = std::fs::read(&path).ok().filter(|_| goes_on);
     let known: Option<Verdict> = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
     // The program behind the same command may be another by now.
     let kept = |known: &Verdict| known.key == key && known.status == Status::Passed;

@@ -123,7 +123,7 @@ pub fn expected(summary: &Value) -> Option<Value> {
     if parts.is_empty() {
         return None;
     }
-    without_process(&mut kept);
+    without_process(&mut kept, false);
     Some(kept)
 }
 
@@ -148,15 +148,34 @@ const NOT_PACKED_BELOW: [&str; 17] = [
     "not_separated_from",
 ];
 
-fn without_process(value: &mut Value) {
+/// Parts whose entries have names that the scene gives.
+const NAMED: [&str; 9] = [
+    "probes",
+    "supports",
+    "bearings",
+    "housings",
+    "bodies",
+    "geometry",
+    "hertz",
+    "rating_life",
+    "kinematics",
+];
+
+/// Removes what describes the process from a part of a summary; of one with names only texts.
+fn without_process(value: &mut Value, is_named: bool) {
     match value {
         Value::Object(parts) => {
-            parts.retain(|name, _| !NOT_PACKED_BELOW.contains(&name.as_str()));
-            // "every accepted step", "kinematic frequencies".
-            parts.retain(|name, of| !(of.is_string() && ["of", "are"].contains(&name.as_str())));
-            parts.values_mut().for_each(without_process);
+            parts.retain(|name, of| {
+                // "every accepted step", "kinematic frequencies".
+                let explains = of.is_string() && ["of", "are"].contains(&name.as_str());
+                let is_process = NOT_PACKED_BELOW.contains(&name.as_str());
+                !explains && (!is_process || is_named && !of.is_string())
+            });
+            for (name, part) in parts {
+                without_process(part, NAMED.contains(&name.as_str()));
+            }
         }
-        Value::Array(list) => list.iter_mut().for_each(without_process),
+        Value::Array(list) => list.iter_mut().for_each(|of| without_process(of, false)),
         _ => {}
     }
 }

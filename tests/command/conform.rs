@@ -73,9 +73,10 @@ fn this_program_passes_its_own_set() {
     assert_eq!((code, rows.len()), (0, 6));
     let page = read(&out.join("report.md"));
     assert!(page.contains("level 1") && page.contains("tag modes"), "{page}");
-    // What is done is not done again.
+    // After an interruption what is done is not done again.
     let verdict = |name: &str| read(&out.join(name).join("verdict.json"));
     let before = verdict("settling");
+    fs::remove_file(out.join("results.json")).unwrap();
     conform(&set, &own, &out, &[]);
     assert_eq!(before, verdict("settling"));
     let (_, of_level) = conform(&set, &own, &out, &["--level", "1"]);
@@ -98,8 +99,13 @@ fn a_changed_program_is_run_again() {
     let of_earlier = "of an earlier run";
     assert_eq!(run().1[0].1, "passed");
     assert!(!read(&out.join("report.md")).contains(of_earlier));
+    // Not finished, it goes on with what it has; finished, it starts again.
+    fs::remove_file(out.join("results.json")).unwrap();
     assert_eq!(run().1[0].1, "passed");
     assert!(read(&out.join("report.md")).contains(of_earlier));
+    assert_eq!(run().1[0].1, "passed");
+    assert!(!read(&out.join("report.md")).contains(of_earlier));
+    fs::remove_file(out.join("results.json")).unwrap();
     write(root.path(), "program.sh", "exit 1");
     assert_eq!(run().1[0].1, "failed");
 

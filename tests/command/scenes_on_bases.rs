@@ -32,24 +32,23 @@ fn a_pack_holds_the_bases() {
     fs::remove_dir_all(root.path().join("parts")).unwrap();
     done(&["statics", &format!("{pack}/scene.toml"), "--out", &out]);
     assert!(done(&["compare", &pack, &out]).starts_with("equal: "));
-    // What lies elsewhere cannot be packed, nor what is named from the root.
-    let path = write(
-        root.path(),
-        "fixed.toml",
-        &format!("base = \"{}\"\n", scene("deep_groove_tilt.toml")),
-    );
-    let said = refused(&["pack", &path, "--out", &text(&root.path().join("fixed"))]);
-    assert!(said.contains("deep_groove_tilt.toml\" is outside the scene's folder"), "{said}");
-    let inside = write(root.path(), "base.toml", &base);
-    let path = write(root.path(), "fixed.toml", &format!("base = \"{inside}\"\n"));
-    let said = refused(&["pack", &path, "--out", &text(&root.path().join("fixed"))]);
-    assert!(said.contains("base.toml\" is outside the scene's folder"), "{said}");
+    // With a base elsewhere, or named from the root, the pack has the whole scene.
     fs::create_dir(root.path().join("deep")).unwrap();
-    write(root.path(), "base.toml", &base);
-    let path = write(root.path(), "deep/study.toml", "base = \"../base.toml\"\n");
-    done(&["statics", &path, "--dry"]);
-    let said = refused(&["pack", &path, "--out", &text(&root.path().join("other"))]);
-    assert!(said.contains("base.toml\" is outside the scene's folder"), "{said}");
+    let inside = write(root.path(), "base.toml", &base);
+    let shipped = scene("deep_groove_tilt.toml");
+    for (name, base) in [
+        ("shipped.toml", shipped.as_str()),
+        ("rooted.toml", &inside),
+        ("deep/study.toml", "../base.toml"),
+    ] {
+        let path = write(root.path(), name, &format!("base = \"{base}\"\n"));
+        let pack = root.path().join(format!("{name}-pack"));
+        assert!(done(&["pack", &path, "--out", &text(&pack)]).starts_with("wrote 7 files to "));
+        let whole = text(&pack.join("scene.json"));
+        let out = text(&root.path().join(format!("{name}-out")));
+        done(&["statics", &whole, "--out", &out]);
+        assert!(done(&["compare", &text(&pack), &out]).starts_with("equal: "), "{name}");
+    }
 }
 
 /// A run goes on from its state where base and scene are what they were, and is refused where the base is not.

@@ -15,7 +15,7 @@ use bearing_dynamics::scene::{Document, Subject, resolve_subject};
 use solved::{Kind, Solved};
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
@@ -72,7 +72,11 @@ fn write_one(
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("toml");
     let bases = document.bases();
     let folder_of_scene = path.parent().unwrap_or(Path::new(""));
-    let is_inside = |(base, _): &(String, &str)| folder_of_scene.join(base).exists();
+    let is_inside = |(base, _): &(String, &str)| {
+        let is_below =
+            Path::new(base).components().all(|part| matches!(part, Component::Normal(_)));
+        is_below && folder_of_scene.join(base).exists()
+    };
     // With changed keys, or with a base outside, the text of the scene is not the scene.
     let is_as_written = changes.is_empty() && bases.iter().all(is_inside);
     let scene_name = format!("scene.{}", if is_as_written { extension } else { "json" });

@@ -117,7 +117,7 @@ fn shifted(scene: &Value, by: f64) -> Option<Value> {
 
 /// The scene with half as many cells again in shafts of elements and bushings, and with bushings fitted to ten times the
 /// frequency; `None` without them.
-fn finer_meshes(scene: &Value) -> Option<Value> {
+pub fn finer_meshes(scene: &Value) -> Option<Value> {
     let mut other = scene.clone();
     let finer = |map: &mut serde_json::Map<String, Value>| {
         let mut any = false;

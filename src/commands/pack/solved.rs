@@ -133,12 +133,16 @@ pub fn meshes(scene: &Path, changes: &[String], files: &MeshFiles) -> Fallible<M
 /// modes, and of the elements of usual programs, which grow with the square of the frequency.
 const LOW: f64 = 0.05;
 
-/// Removes the high ones of the modes of a shaft.
+/// Removes the high ones of the modes of a shaft, without rotation and with it.
 fn keep_low_modes(summary: &mut Value) {
     let frequency = |mode: &Value| mode["frequency"]["value"].as_f64().unwrap_or(0.0);
-    let Some(modes) = summary["modes"].as_array_mut() else { return };
-    let highest = modes.iter().map(frequency).fold(0.0, f64::max);
-    modes.retain(|mode| frequency(mode) <= LOW * highest);
+    let modes = summary["modes"].as_array().into_iter().flatten();
+    let highest = modes.map(frequency).fold(0.0, f64::max);
+    for list in ["/modes", "/rotor/whirl"] {
+        if let Some(modes) = summary.pointer_mut(list).and_then(Value::as_array_mut) {
+            modes.retain(|mode| frequency(mode) <= LOW * highest);
+        }
+    }
 }
 
 /// Output of this program.

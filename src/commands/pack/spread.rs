@@ -14,6 +14,8 @@ use std::path::Path;
 const OF_SEARCH: f64 = 1e-10;
 /// Least tolerance of tilts, deg: what a moment of 1e-10 of 5 kN on 50 mm turns a race on 5 kN m/rad.
 const OF_TILT: f64 = 3e-10;
+/// Least tolerance of the positions of balls with shafts and solids, m.
+const OF_BALLS: f64 = 1e-8;
 /// Least tolerances of damping ratios and of directions of whirl: what eigenvalues and vectors of other solvers have.
 const OF_DAMPING: f64 = 1e-8;
 const OF_DIRECTION: f64 = 1e-3;
@@ -158,30 +160,39 @@ impl Spread {
         self.largest.iter().filter_map(of).collect()
     }
 
-    /// Raises all tolerances to this share: relative, and of all but frequencies also of the scale, so that a small
-    /// component of a vector needs no more digits than the largest.
-    pub fn add_least(
+    /// Raises tolerances to this share: relative, and but for frequencies and matrices of several units also of the scale,
+    /// so that a small component of a vector needs no more digits than the largest. Sizes and inputs keep theirs.
+    pub fn add_least<'r>(
         &self,
         channels: &mut Channels,
-        least: impl Fn(&str) -> f64,
-        reason: &str,
+        least: impl Fn(&str) -> (f64, &'r str),
     ) -> Fallible<()> {
         for (name, unit) in self.channels()? {
             let Some(class) = self.class.tolerance(&unit) else { continue };
-            let least = least(&name);
+            let is_matrix = name.contains("matrix");
+            if is_given(&name) || unit.is_empty() && !is_matrix {
+                continue;
+            }
+            let (least, reason) = least(&name);
             let mut own = channels.get(&name).cloned().unwrap_or_default();
             let relative = own.relative.unwrap_or(class.relative);
             let share = own.scale_relative.unwrap_or(class.scale_relative);
-            let is_frequency = ["Hz", "rad/s"].contains(&unit.as_str());
-            let is_wide = relative >= least && (is_frequency || share >= least);
+            let is_alone = is_matrix || ["Hz", "rad/s"].contains(&unit.as_str());
+            let is_wide = relative >= least && (is_alone || share >= least);
             if own.class == Some(ToleranceClass::Ignored) || is_wide {
                 continue;
             }
-            own.relative = Some(relative.max(least));
-            if !is_frequency {
-                own.scale_relative = Some(share.max(least));
+            if name.contains("balls[].position") || name.starts_with("position_") {
+                // They are as large as the bearing.
+                own.absolute_floor = Some(own.absolute_floor.unwrap_or(0.0).max(OF_BALLS));
+            } else {
+                own.relative = Some(relative.max(least));
+                if !is_alone {
+                    own.scale_relative = Some(share.max(least));
+                }
             }
-            own.reason = Some(reason.into());
+            let measured = own.reason.map_or(String::new(), |reason| format!("{reason}; "));
+            own.reason = Some(format!("{measured}{least:e} or more for {reason}"));
             channels.insert(name, own);
         }
         Ok(())
@@ -264,6 +275,14 @@ impl Spread {
         let all = compare(of, of, &Options::default())?.channels.into_iter();
         Ok(all.map(|channel| (channel.channel, channel.unit)).collect())
     }
+}
+
+/// Returns whether a channel follows from sizes and inputs alone.
+fn is_given(channel: &str) -> bool {
+    let section = channel.split('.').next().unwrap_or_default();
+    let inputs = ["time", "end", "speed", "rotor.speed"];
+    ["geometry", "hertz", "frequencies", "body_inertia"].contains(&section)
+        || inputs.contains(&channel)
 }
 
 /// The name of a channel with `#` for the number of a ball.
