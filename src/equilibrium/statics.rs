@@ -414,10 +414,12 @@ fn solution(
 }
 
 /// Stiffness of the first loaded body with all others free where no motion is prescribed, N/m, N, N·m: of a shaft against
-/// the ground, through its bearing and a flexible housing. `None` if another body has no stiffness of its own.
+/// the ground, through its bearing and a flexible housing. `None` if another body has no stiffness of its own. With
+/// `slides` the outer race, the second loaded body, slides along its bore: nothing holds the shaft axially.
 pub fn stiffness_to_ground(
     still: &StaticAssembly,
     solution: &AssemblySolution,
+    slides: bool,
 ) -> Option<SMatrix<f64, 5, 5>> {
     let whole = &solution.stiffness;
     let loaded = still.bodies.iter().filter_map(|body| match &body.place {
@@ -428,11 +430,18 @@ pub fn stiffness_to_ground(
         .enumerate()
         .skip(1)
         .flat_map(|(place, body)| {
-            (0..5).filter(|i| body.prescribed(*i).is_none()).map(move |i| 5 * place + i)
+            let is_free = move |i: &usize| body.prescribed(*i).is_none() || slides && *i == 0;
+            (0..5).filter(is_free).map(move |i| 5 * place + i)
         })
         .collect();
     let own = eliminated(whole, &[0, 1, 2, 3, 4], &free)?;
-    Some(own.fixed_view::<5, 5>(0, 0).into_owned())
+    let mut own = own.fixed_view::<5, 5>(0, 0).into_owned();
+    if slides {
+        // But for rounding.
+        own.row_mut(0).fill(0.0);
+        own.column_mut(0).fill(0.0);
+    }
+    Some(own)
 }
 
 /// Stiffness over the `kept` coordinates with the `free` ones in equilibrium; `None` where these have no stiffness.

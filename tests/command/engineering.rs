@@ -272,4 +272,11 @@ fn a_shaft_in_a_housing_is_softer_than_its_bearing() {
         assert!(ground < bearing && (ground - series).abs() <= 0.15 * series, "{ground} {series}");
     }
     assert!(Path::new(&out.join("series.csv")).is_file());
+    // A race that slides in its bore holds no shaft along its axis.
+    let out = root.path().join("slides");
+    done(&["statics", &shipped, "--set", "housing.axial=free", "--out", &text(&out)]);
+    let summary = json(&out.join("summary.json"));
+    let of = |section: &str, axis: &str| summary[section][axis][axis]["value"].as_f64().unwrap();
+    assert!(of("stiffness", "x") > 1e6 && of("stiffness_to_ground", "x") == 0.0);
+    assert!(of("stiffness_to_ground", "z") > 1e6);
 }

@@ -31,7 +31,7 @@ use bearing_dynamics::output::summary::solid::field_sections;
 use bearing_dynamics::output::warnings::{Warning, lines, solid as of_solid};
 use bearing_dynamics::scene::build::assembly::AssemblyScene;
 use bearing_dynamics::scene::{Document, Plot};
-use bearing_dynamics::solids::bore_equilibrium::{BoreState, POSE_NAMES};
+use bearing_dynamics::solids::bore_equilibrium::{Axial, BoreState, POSE_NAMES};
 use bearing_dynamics::solids::condensation::CondensedBore;
 use nalgebra::SMatrix;
 use serde_json::{Map, Value, json};
@@ -130,7 +130,10 @@ pub fn find_equilibrium<'s>(
         settled.push(own);
     }
     let to_ground = match (&of_one, &settled[..]) {
-        (Some(_), [_]) => stiffness_to_ground(still, &moment.solution),
+        (Some(_), [one]) => {
+            let slides = one.housing.scene.housing.axial == Axial::Free;
+            stiffness_to_ground(still, &moment.solution, slides)
+        }
         _ => None,
     };
     if let Some(matrix) = &to_ground {
