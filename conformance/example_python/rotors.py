@@ -6,8 +6,12 @@ Two-node Timoshenko elements of 10 mm, bearings of candidate.py. Needs numpy and
 """
 
 import json
+import os
 import sys
 from pathlib import Path
+
+# Packs run side by side; more threads for one slow all of them down tenfold.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import candidate
 import numpy as np
