@@ -105,8 +105,9 @@ struct Verdict {
 
 pub fn run(arguments: &Arguments) -> CommandResult {
     let start = Instant::now();
-    let packs = packs(arguments)?;
-    refuse_unknown(arguments)?;
+    let all = manifests(arguments)?;
+    refuse_unknown(arguments, &all)?;
+    let packs = wanted(arguments, all);
     if packs.is_empty() {
         let set = arguments.set.display();
         let why = match arguments.set.join(MANIFEST).exists() {
@@ -146,16 +147,12 @@ pub fn run(arguments: &Arguments) -> CommandResult {
     })
 }
 
-/// All tags of a set.
-fn tags(arguments: &Arguments) -> Result<BTreeSet<String>, Box<dyn Error>> {
-    Ok(manifests(arguments)?.into_iter().flat_map(|(_, of)| of.about.tags).collect())
-}
-
 /// Refuses tags that no pack has, and parts of the command in braces that are not replaced.
-fn refuse_unknown(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let known = tags(arguments)?;
-    if let Some(tag) = arguments.tags.iter().find(|tag| !known.contains(*tag)) {
-        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+fn refuse_unknown(arguments: &Arguments, all: &[(String, Manifest)]) -> Result<(), Box<dyn Error>> {
+    let known: BTreeSet<&str> =
+        all.iter().flat_map(|(_, of)| &of.about.tags).map(String::as_str).collect();
+    if let Some(tag) = arguments.tags.iter().find(|tag| !known.contains(tag.as_str())) {
+        let known: Vec<&str> = known.into_iter().collect();
         return Err(format!("--tags {tag}: no pack has it; tags are {}", known.join(", ")).into());
     }
     // Variables of the shell are no words of ours.
@@ -173,15 +170,14 @@ fn refuse_unknown(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 /// Names and manifests of the packs asked for.
-fn packs(arguments: &Arguments) -> Result<Vec<(String, Manifest)>, Box<dyn Error>> {
+fn wanted(arguments: &Arguments, mut found: Vec<(String, Manifest)>) -> Vec<(String, Manifest)> {
     let claimed: BTreeSet<&String> = arguments.tags.iter().collect();
-    let mut found = manifests(arguments)?;
     found.retain(|(_, Manifest { about, .. })| {
         let level = arguments.level.is_none_or(|level| level == about.level);
         level && (claimed.is_empty() || about.tags.iter().all(|tag| claimed.contains(tag)))
     });
     found.sort_by(|a, b| a.0.cmp(&b.0));
-    Ok(found)
+    found
 }
 
 /// Names and manifests of all packs of the set.

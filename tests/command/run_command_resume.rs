@@ -57,7 +57,7 @@ fn a_run_that_cannot_go_on_says_what_has_changed() {
     let parts = place.path("parts");
     assert_eq!(code(&run(&place.scene("scene.toml", &text), &parts, &[])), 0);
     let longer = text.replace("\"1 ms\"", "\"2 ms\"");
-    for (from, to, told) in [
+    for (from, to, change) in [
         ("\"-250 N\"", "\"-251 N\"", "inner_race.z"),
         ("\"1000 rpm\"", "\"1001 rpm\"", "inner_race.speed"),
         ("mass = \"20 g\"", "mass = \"21 g\"", "bearing.cage.mass was 0.02 kg, is 0.021 kg"),
@@ -67,7 +67,7 @@ fn a_run_that_cannot_go_on_says_what_has_changed() {
         assert_eq!(code(&output), 2);
         let message = stderr(&output);
         // First what was written, then what follows from it.
-        assert!(message.contains(&format!("; changed: scene.{told}")), "{message}");
+        assert!(message.contains(&format!("; changed: scene.{change}")), "{message}");
     }
     assert_eq!(code(&run(&place.scene("longer.toml", &longer), &parts, &["--resume"])), 0);
 }

@@ -55,8 +55,8 @@ fn points_have_the_bits_of_single_runs_after_an_interruption() {
     let message = refusal(&["sweep"], &run);
     // Half a second a point: a busy machine may be late by one.
     let complete = (1..=2).find(|kept| {
-        let told = format!("interrupted after {kept} of 3 points, kept in {}", out.display());
-        message.starts_with(&told)
+        let expected = format!("interrupted after {kept} of 3 points, kept in {}", out.display());
+        message.starts_with(&expected)
     });
     let complete = complete.unwrap_or_else(|| panic!("{message}"));
     let state = json(&point(&out, complete).join("state.json"));
